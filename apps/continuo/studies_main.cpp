@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     return usage;
   }
   const std::array verbs{
-      OwnVerb{"run", [](CLI::App& app, ExitCode& exit) { add_run(app, exit, show_families); }},
+      OwnVerb{"run", [](CLI::App& app, ExitCode& exit) { add_run(app, exit, show_families, {}); }},
       OwnVerb{"compare", add_compare},
       OwnVerb{"converge", add_converge},
       OwnVerb{"stability", add_stability},

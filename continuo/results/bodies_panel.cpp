@@ -21,7 +21,6 @@ namespace {
 
 using Flat = std::array<double, 2>;
 
-constexpr std::size_t most_ways = 20;  // of more bodies the picture would be a tangle
 constexpr std::size_t most_discs = 3000;
 constexpr std::string_view still_color = "#8a8a8a";
 
@@ -38,7 +37,8 @@ struct Seen {
 
 class BodiesPanel {
  public:
-  BodiesPanel(const model::Model& model, const model::Run& run) : model_(model), run_(run), world_(*model.world) {
+  BodiesPanel(const model::Model& model, const model::Run& run, const MotionCurves* curves)
+      : model_(model), run_(run), world_(*model.world), curves_(curves) {
     for (const model::BodyDescription& body : world_.bodies) {
       const std::string_view family = family_of(body.name);
       if (std::ranges::find(families_, family) == families_.end()) families_.push_back(family);
@@ -76,7 +76,7 @@ class BodiesPanel {
   Flat place(std::size_t body, std::size_t row) const {
     const double x = coordinate(body, 0, row), y = coordinate(body, 1, row);
     if (world_.dimension == 2) return {x, y};
-    return {(x - y) * std::sqrt(0.75), coordinate(body, 2, row) - (x + y) / 2};
+    return {right_in_space(x, y), up_in_space(x, y, coordinate(body, 2, row))};
   }
   double nearness(std::size_t body) const {
     if (world_.dimension == 2) return 0;
@@ -89,10 +89,12 @@ class BodiesPanel {
       if (world_.bodies[i].fixed) continue;
       Curve way{
           .label = "", .x = {}, .y = {}, .color = std::string(color_of_body(i)), .style = Curve::Style::thin_line};
-      for (std::size_t row = 0; row <= last_row(); ++row) {
+      auto followed = curves_ ? curves_->way_of(i) : std::nullopt;
+      for (std::size_t row = 0; !followed && row <= last_row(); ++row) {
         const Flat at = place(i, row);
         way.x.push_back(at[0]), way.y.push_back(at[1]);
       }
+      if (followed) way.x = std::move(followed->x), way.y = std::move(followed->y);
       panel_.curves.push_back(std::move(way));
     }
   }
@@ -221,14 +223,15 @@ class BodiesPanel {
   const model::Model& model_;
   const model::Run& run_;
   const model::WorldDescription& world_;
+  const MotionCurves* curves_;  // may be null
   std::vector<std::string_view> families_;
   Panel panel_{.x_label = "", .y_label = "", .curves = {}};
 };
 
 }  // namespace
 
-Panel bodies_panel(const model::Model& model, const model::Run& run) {
-  return BodiesPanel(model, run).panel();
+Panel bodies_panel(const model::Model& model, const model::Run& run, const MotionCurves* curves) {
+  return BodiesPanel(model, run, curves).panel();
 }
 
 }  // namespace continuo::results

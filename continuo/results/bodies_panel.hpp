@@ -3,11 +3,13 @@
 #pragma once
 #include <continuo/language/model.hpp>
 #include <continuo/results/figure.hpp>
+#include <continuo/results/motion_curves.hpp>
 #include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 
-/// Of a model with a world, and a run with a row.
-[[nodiscard]] Panel bodies_panel(const model::Model& model, const model::Run& run);
+/// Of a model with a world, and a run with a row. The ways go through its rows, or are those of the curves.
+[[nodiscard]] Panel bodies_panel(const model::Model& model, const model::Run& run,
+                                 const MotionCurves* curves = nullptr);
 
 }  // namespace continuo::results

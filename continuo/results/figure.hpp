@@ -20,9 +20,21 @@ struct Curve {
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
   /// An area is a closed path, lightly filled. Discs have a radius each, on the scale of x, and a colour.
-  enum class Style { line, dashed_line, thin_line, full_points, empty_points, dots, area, discs };
+  enum class Style {
+    line,
+    dashed_line,
+    dotted_line,
+    thin_line,
+    line_with_points,
+    full_points,
+    empty_points,
+    dots,
+    area,
+    discs
+  };
   Style style = Style::line;
-  bool widens_axes = true;  // false: the axes do not reach for it
+  std::optional<std::size_t> number{};  // of its colour in the palette; else its place in the panel
+  bool widens_axes = true;              // false: the axes do not reach for it
   /// A disc at a point of the curve.
   struct Disc {
     double radius = 0;
@@ -40,22 +52,34 @@ struct Panel {
   bool equal_scale = false;    // one unit is as long upwards as to the right
   bool logarithmic_x = false;  // what is not positive has no place there
   bool logarithmic_y = false;
-  bool tall = false;        // as high as wide pictures allow: for planes
-  bool zero_lines = false;  // through the origin
-  bool no_numbers = false;  // at the axes
+  bool tall = false;                         // as high as wide pictures allow: for planes
+  bool zero_lines = false;                   // through the origin
+  double least_width = 0, least_height = 0;  // of the values that the axes show: they magnify nothing smaller
+  bool no_numbers = false;                   // at the axes
+};
+
+/// How large a picture is, in pixels; zero where nobody has said.
+struct PictureSize {
+  int width = 0, height = 0;
 };
 
 /// A picture: panels from top to bottom.
 struct Figure {
   std::string title;
   std::vector<Panel> panels;
+  PictureSize size{};
 };
 
 /// The colour of the curve of this number where it names none.
 [[nodiscard]] std::string_view color_of(std::size_t number);
 
-/// The file's ending says the format: .svg or .png. Returns what went wrong, if anything: unknown ending, gnuplot not
-/// installed, folder not writable.
+/// The endings of files that can be drawn into, as people read them.
+inline constexpr std::string_view picture_endings = ".svg, .png or .pdf";
+/// Whether the file's ending is one of them.
+[[nodiscard]] bool is_picture(std::string_view path);
+
+/// The file's ending says the format: .svg, .png or .pdf. Returns what went wrong, if anything: unknown ending, gnuplot
+/// not installed, folder not writable.
 Status draw(const Figure& figure, const std::string& path);
 
 /// The program for gnuplot that `draw` runs.
@@ -66,6 +90,10 @@ struct Range {
   double low, high;
 };
 
+/// An axis shows at least so many times the tolerance of its quantity: what a run has not computed is not magnified,
+/// and an energy that is conserved is a level line.
+inline constexpr double least_tolerances_of_axis = 100;
+
 /// What an axis shows of values from low to high, with so much air as a part of these. It has an extent even over a
 /// constant (with its round-off) and over nothing at all (low > high): left to choose, gnuplot warns of the one and
 /// ends at the other.
@@ -73,6 +101,15 @@ struct Range {
 
 /// What of a closed path without gaps lies in a rectangle.
 [[nodiscard]] Curve clipped(const Curve& path, Range x, Range y);
+
+/// Where a point of space is seen in the plane of a picture: from above the corner, along (-1, -1, -1).
+[[nodiscard]] inline double right_in_space(double x, double y) {
+  return (x - y) * 0.86602540378443864676;  // sqrt(3/4)
+}
+/// Its other coordinate there.
+[[nodiscard]] inline double up_in_space(double x, double y, double z) {
+  return z - (x + y) / 2;
+}
 
 /// A curve of many points without those that no eye can tell apart on a picture `pixels` wide. Peaks stay.
 [[nodiscard]] Curve thinned(const Curve& curve, std::size_t pixels);

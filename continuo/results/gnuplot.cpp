@@ -28,7 +28,8 @@ namespace continuo::results {
 namespace {
 
 constexpr int width = 960, panel_height = 300, square_height = 720, title_height = 40;  // pixels
-constexpr double closest_marks = 4;  // pixels; nearer ones would join to a grey block
+constexpr double closest_marks = 4;          // pixels; nearer ones would join to a grey block
+constexpr std::size_t most_long_marks = 40;  // more would paint the background, and stand at its foot alone
 
 // Okabe and Ito's colours, told apart by all common kinds of colour vision. M. Okabe, K. Ito, "Color universal design"
 // (2008). Yellow is left out, too pale on white, and black, which marks what others are compared with.
@@ -100,6 +101,10 @@ std::string style_of(Curve::Style style, std::string_view own, std::size_t numbe
   switch (style) {
     case Curve::Style::dashed_line:
       return fmt::format("lines lw 1.8 dt '-' lc rgb '{}'", color);
+    case Curve::Style::dotted_line:
+      return fmt::format("lines lw 1 dt 3 lc rgb '{}'", color);
+    case Curve::Style::line_with_points:
+      return fmt::format("linespoints lw 1.8 pt 7 ps 0.4 dt {} lc rgb '{}'", round + 1, color);
     case Curve::Style::thin_line:
       return fmt::format("lines lw 0.9 lc rgb '{}'", color);
     case Curve::Style::full_points:
@@ -130,11 +135,16 @@ Range range_of(const Panel& panel, std::vector<double> Curve::* values, double a
   }
   return axis_over(low, high, air);
 }
+/// The same about its middle, where it would show less than is known.
+Range at_least(const Range& range, double extent) {
+  const double more = (extent - (range.high - range.low)) / 2;
+  return more > 0 ? Range{range.low - more, range.high + more} : range;
+}
 Range range_of_x(const Panel& panel) {
-  return range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0);
+  return at_least(range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0), panel.least_width);
 }
 Range range_of_y(const Panel& panel) {
-  return range_of(panel, &Curve::y, 0.05);
+  return at_least(range_of(panel, &Curve::y, 0.05), panel.least_height);
 }
 std::string range_text(const Range& range) {
   return fmt::format("[{}:{}]", range.low, range.high);
@@ -196,7 +206,8 @@ std::size_t shown_points(const Panel& panel, const Curve& curve) {
 }
 
 bool is_line(Curve::Style style) {
-  return style == Curve::Style::line || style == Curve::Style::dashed_line || style == Curve::Style::thin_line;
+  return style == Curve::Style::line || style == Curve::Style::dashed_line || style == Curve::Style::thin_line ||
+         style == Curve::Style::dotted_line || style == Curve::Style::line_with_points;
 }
 
 /// Ticks between the powers of ten, where there are few enough of these.
@@ -222,9 +233,11 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
       fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
   script += fmt::format("set xrange {}\nset yrange {}\n", x_range_text(panel), y_range_text(panel));
   const auto marks = distinct_marks(panel);
+  const bool short_marks = marks.size() > most_long_marks;
   for (const double mark : marks) {
     script += fmt::format(
-        "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1 dt 3 lc rgb '#999999'\n", mark);
+        "set arrow from first {0}, graph 0 to first {0}, graph {1} nohead back lw 1 dt {2} lc rgb '#999999'\n", mark,
+        short_marks ? "0.04" : "1", short_marks ? 1 : 3);
   }
   script += "plot ";
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
@@ -236,10 +249,12 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
         "{}{} with {} {}", i > 0 ? ", " : "",
         points > 0 ? fmt::format("$curve{}_{} using {}", number, i, style == Curve::Style::discs ? "1:2:3:4" : "1:2")
                    : "NaN",
-        style_of(style, panel.curves[i].color, i), label.empty() ? "notitle" : "title " + in_quotes(label));
+        style_of(style, panel.curves[i].color, panel.curves[i].number.value_or(i)),
+        label.empty() ? "notitle" : "title " + in_quotes(label));
   }
   if (!marks.empty())
-    script += fmt::format(", NaN with lines lw 1 dt 3 lc rgb '#999999' title {}", in_quotes(panel.mark_label));
+    script += fmt::format(", NaN with lines lw 1 dt {} lc rgb '#999999' title {}", short_marks ? 1 : 3,
+                          in_quotes(panel.mark_label));
   script += '\n';
 }
 
@@ -310,7 +325,26 @@ bool is_whole_picture(const std::string& path) {
   std::string end(end_bytes, ' ');
   file.seekg(size - end_bytes);
   file.read(end.data(), end_bytes);
-  return end.find(ending_of(path) == ".png" ? "IEND" : "</svg>") != std::string::npos;
+  const std::string ending = ending_of(path);
+  return end.find(ending == ".png" ? "IEND" : ending == ".pdf" ? "%%EOF" : "</svg>") != std::string::npos;
+}
+
+/// What gnuplot calls a terminal: the format, its size and its letters. A PNG has two pixels for one, for screens that
+/// show so many, where nobody has named its size.
+std::string terminal_of(const Figure& figure, const std::string& ending, int usual_height) {
+  const bool is_named = figure.size.width > 0;
+  const int wide = is_named ? figure.size.width : width, high = is_named ? figure.size.height : usual_height;
+  if (ending == ".png") {
+    const int scale = is_named ? 1 : 2;
+    return fmt::format("set terminal pngcairo noenhanced size {},{} font 'sans,{}' linewidth {}\n", scale * wide,
+                       scale * high, 11 * scale, scale);
+  }
+  constexpr double pixels_per_inch = 96;
+  if (ending == ".pdf")
+    return fmt::format("set terminal pdfcairo noenhanced size {:.4f}in,{:.4f}in font 'sans,10' linewidth 1\n",
+                       wide / pixels_per_inch, high / pixels_per_inch);
+  return fmt::format("set terminal svg noenhanced size {},{} dynamic font 'sans-serif,13' background '#ffffff'\n", wide,
+                     high);
 }
 
 std::string content_of(const std::string& path) {
@@ -344,6 +378,11 @@ std::string_view color_of(std::size_t number) {
   return palette[number % std::size(palette)];
 }
 
+bool is_picture(std::string_view path) {
+  const std::string ending = ending_of(std::string(path));
+  return ending == ".svg" || ending == ".png" || ending == ".pdf";
+}
+
 std::string gnuplot_script(const Figure& figure, const std::string& path) {
   const int height = height_of(figure);
   std::string script;
@@ -353,12 +392,7 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
       append_data(script, panel, fmt::format("$curve{}_{}", p, c), drawn(panel, panel.curves[c]));
     }
   }
-  script +=
-      ending_of(path) == ".png"
-          ? fmt::format("set terminal pngcairo noenhanced size {},{} font 'sans,22' linewidth 2\n", 2 * width,
-                        2 * height)
-          : fmt::format("set terminal svg noenhanced size {},{} dynamic font 'sans-serif,13' background '#ffffff'\n",
-                        width, height);
+  script += terminal_of(figure, ending_of(path), height);
   script += fmt::format("set output {}\nset encoding utf8\n", in_quotes(path));
   script +=
       "set grid back lc rgb '#dddddd' lw 1 dt 1\nset border 3 lc rgb '#555555'\nset tics nomirror textcolor rgb "
@@ -378,9 +412,8 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
 }
 
 Status draw(const Figure& figure, const std::string& path) {
-  const std::string ending = ending_of(path);
-  if (ending != ".svg" && ending != ".png") {
-    return invalid_input(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
+  if (!is_picture(path)) {
+    return invalid_input(fmt::format("cannot plot to {}: the file's name ends in {}", path, picture_endings));
   }
   if (Status status = check_writable(path); !status)
     return status;  // a folder that is not there is our message, not gnuplot's

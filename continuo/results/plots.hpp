@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <continuo/results/figure.hpp>
+#include <continuo/results/motion_curves.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/run.hpp>
 
@@ -24,9 +25,9 @@ struct PlotData {
 /// The model's `plot` statements; where it has none, its states against time, up to eight.
 [[nodiscard]] std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run);
 
-/// What `run --plot` draws: the `plot` statements, or, of bodies without any, where they are at the end, with the
-/// states of one or two; and the drift of the energy.
-[[nodiscard]] Figure figure_of(const model::ModelProgram& program, const model::Run& run);
+/// What `run --plot` draws: the plots that the curves were asked for, or, of bodies without any, where they are at the
+/// end, with the states of one or two; and the drift of the energy. Of a motion that nobody has watched, the rows.
+[[nodiscard]] Figure figure_of(const model::ModelProgram& program, const model::Run& run, MotionCurves& curves);
 
 /// Curves of one unit share a panel; curves of different units get panels of their own, one below the other.
 [[nodiscard]] Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots);

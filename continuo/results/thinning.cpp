@@ -1,6 +1,6 @@
 // A picture a thousand pixels wide shows no more than a few points per pixel. Curves over an ascending axis keep the
 // first, lowest, highest and last point of every pixel column, which draws the same picture; other curves (orbits) drop
-// points that lie within half a pixel of the last one kept.
+// points that lie within half a pixel of the last one kept. Gaps stay, one for several in a row.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,30 +44,49 @@ void keep_column(const Curve& from, std::size_t begin, std::size_t end, Curve& t
 
 }  // namespace
 
+namespace {
+
+/// The points from `begin` to before `end`, none of which is a gap.
+void thin_line(const Curve& curve, std::size_t begin, std::size_t end, Bounds across, Bounds upwards, double width,
+               Curve& result) {
+  if (std::is_sorted(curve.x.begin() + static_cast<std::ptrdiff_t>(begin),
+                     curve.x.begin() + static_cast<std::ptrdiff_t>(end))) {
+    const auto column = [&](std::size_t i) {
+      return std::floor((curve.x[i] - across.low) / (across.high - across.low) * width);
+    };
+    for (std::size_t first = begin, next = begin; first < end; first = next) {
+      while (next < end && column(next) == column(first)) ++next;
+      if (next == first) next = end;  // no column is a number where the curve has no width
+      keep_column(curve, first, next, result);
+    }
+    return;
+  }
+  keep(curve, begin, result);
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const double dx = (curve.x[i] - result.x.back()) / (across.high - across.low);
+    const double dy = (curve.y[i] - result.y.back()) / (upwards.high - upwards.low);
+    if (i + 1 == end || std::hypot(dx, dy) * width >= 0.5) keep(curve, i, result);
+  }
+}
+
+}  // namespace
+
 Curve thinned(const Curve& curve, std::size_t pixels) {
   const std::size_t size = curve.x.size();
-  const bool all_finite = std::ranges::all_of(curve.y, [](double y) { return std::isfinite(y); });
-  if (size <= 4 * pixels || !all_finite) return curve;
-  const auto [x_low, x_high] = bounds_of(curve.x);
-  const auto [y_low, y_high] = bounds_of(curve.y);
+  if (size <= 4 * pixels) return curve;
+  const Bounds across = bounds_of(curve.x), upwards = bounds_of(curve.y);
   Curve result = curve;
   result.x.clear();
   result.y.clear();
-  const auto width = static_cast<double>(pixels);
-
-  if (std::ranges::is_sorted(curve.x)) {
-    const auto column = [&](std::size_t i) { return std::floor((curve.x[i] - x_low) / (x_high - x_low) * width); };
-    for (std::size_t begin = 0, end = 0; begin < size; begin = end) {
-      while (end < size && column(end) == column(begin)) ++end;
-      keep_column(curve, begin, end, result);
+  const auto is_gap = [&](std::size_t i) { return !std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i]); };
+  for (std::size_t begin = 0, end = 0; begin < size; begin = end) {
+    if (is_gap(begin)) {
+      if (result.x.empty() || std::isfinite(result.x.back() + result.y.back())) keep(curve, begin, result);
+      end = begin + 1;
+      continue;
     }
-    return result;
-  }
-  keep(curve, 0, result);
-  for (std::size_t i = 1; i < size; ++i) {
-    const double dx = (curve.x[i] - result.x.back()) / (x_high - x_low);
-    const double dy = (curve.y[i] - result.y.back()) / (y_high - y_low);
-    if (i + 1 == size || std::hypot(dx, dy) * width >= 0.5) keep(curve, i, result);
+    while (end < size && !is_gap(end)) ++end;
+    thin_line(curve, begin, end, across, upwards, static_cast<double>(pixels), result);
   }
   return result;
 }

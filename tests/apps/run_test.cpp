@@ -188,7 +188,7 @@ TEST(Run, AFolderThatIsNotThereIsToldBeforeTheRunAFullDiskAfterIt) {
   EXPECT_EQ(result.exit, 1);
   EXPECT_THAT(result.err, HasSubstr("cannot write no/out.csv: No such file or directory"));
   EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_EQ(shell.run("run spring.sim --plot out.pdf").exit, 1);
+  EXPECT_EQ(shell.run("run spring.sim --plot out.bmp").exit, 1);
   EXPECT_EQ(shell.run("run spring.sim -o /dev/full --manifest m.json").exit, 1);
 }
 
@@ -209,7 +209,7 @@ TEST(Run, CtrlCKeepsWhatWasComputed) {
   const Result result = shell.run("run " + gallery("lorenz") + " --until 1e9 --output 1 -o out.csv",
                                   "timeout --foreground --preserve-status --signal INT 1");
   EXPECT_EQ(result.exit, 130);
-  EXPECT_GT(lines_of(shell.read("out.csv")).size(), 10u);
+  EXPECT_GT(lines_of(shell.read("out.unfinished.csv")).size(), 10u);
 }
 
 TEST(Run, AFailedCheckIsExitCodeFourForTheModelAsWritten) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "example.hpp"
+#include <continuo/results/method_colors.hpp>
 #include <continuo/results/plots.hpp>
 
 namespace continuo::results {
@@ -65,6 +66,61 @@ TEST(Plots, EventsAreMarkedOnceEach) {
   EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("set arrow from first 1,"));
 }
 
+TEST(Plots, ThousandsOfEventsDoNotPaintTheBackground) {
+  model::Run run = falling_ball().run;
+  const model::RecordedEvent event = run.events.front();
+  run.events.clear();
+  for (int i = 0; i < 5000; ++i) {
+    run.events.push_back(event);
+    run.events.back().t = i / 5000.0;
+  }
+  const std::string script = gnuplot_script(states_figure(run), "x.svg");
+  EXPECT_THAT(script, HasSubstr("graph 0.04 nohead"));
+  EXPECT_THAT(script, Not(HasSubstr("graph 1 nohead")));
+}
+
+TEST(Plots, AnAxisMagnifiesNothingSmallerThanItIsTold) {
+  Figure figure{.title = "", .panels = {{.x_label = "", .y_label = "", .curves = {{"E", {0, 1}, {10, 10 + 1e-9}}}}}};
+  figure.panels.front().least_height = 0.5;
+  EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("set yrange [9.75"));
+  figure.panels.front().least_height = 0;
+  EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("set yrange [9.99999"));
+}
+
+TEST(Plots, TheSizeOfAFileIsTheOneThatIsNamed) {
+  Figure figure = states_figure(falling_ball().run);
+  EXPECT_THAT(gnuplot_script(figure, "x.png"), HasSubstr("size 1920,"));
+  figure.size = {400, 300};
+  EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("size 400,300"));
+  EXPECT_THAT(gnuplot_script(figure, "x.png"), HasSubstr("size 400,300"));
+  EXPECT_THAT(gnuplot_script(figure, "x.pdf"), HasSubstr("size 4.1667in,3.1250in"));
+}
+
+TEST(Plots, AQuantityHasOneColourInAllPanels) {
+  const model::Run run = falling_ball().run;
+  const std::vector<PlotData> plots = {both_states(run), both_states(run)};
+  const Figure figure = figure_of("Ball", run, plots);
+  for (const Panel& panel : figure.panels)
+    for (const Curve& curve : panel.curves) {
+      if (curve.label == "h") {
+        EXPECT_EQ(curve.number, 0U);
+      }
+      if (curve.label == "h'") {
+        EXPECT_EQ(curve.number, 1U);
+      }
+    }
+}
+
+TEST(Plots, AMethodHasOneColourWhicheverOthersAreThere) {
+  using Names = std::vector<std::string>;
+  const auto alone = colors_of_methods(Names{"rk4"}), among = colors_of_methods(Names{"heun", "euler", "rk4"});
+  EXPECT_EQ(alone[0], among[2]);
+  EXPECT_EQ(colors_of_methods(Names{"explicit_euler"})[0], among[1]);
+  const auto twice = colors_of_methods(Names{"rk4", "rk4"});
+  EXPECT_NE(twice[0], twice[1]);
+  EXPECT_EQ(color_of(twice[0]), color_of(twice[1]));
+}
+
 TEST(Plots, RowsByDecadesGetALogarithmicTime) {
   model::Run run = falling_ball().run;
   run.plan.output = model::OutputPlan::Kind::logarithmic;
@@ -117,7 +173,7 @@ TEST(Plots, AMillionPointsAreDrawnFromAFewThousandAndEveryPeakStays) {
 
 TEST(Plots, AnUnknownEndingAndAMissingFolderAreMessages) {
   const Figure figure = states_figure(falling_ball().run);
-  EXPECT_THAT(draw(figure, "ball.pdf").message, HasSubstr("ends in .svg or .png"));
+  EXPECT_THAT(draw(figure, "ball.gif").message, HasSubstr("ends in .svg, .png or .pdf"));
   EXPECT_THAT(draw(figure, "/no such folder/ball.svg").message, HasSubstr("No such file or directory"));
 }
 

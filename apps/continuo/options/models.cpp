@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <continuo/results/figure.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::app {
@@ -54,9 +55,8 @@ bool readable(const std::string& path) {
 
 bool drawable(const std::string& path) {
   if (path.empty()) return true;
-  const std::string ending = fs::path(path).extension().string();
-  if (ending == ".svg" || ending == ".png") return true;
-  say(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
+  if (results::is_picture(path)) return true;
+  say(fmt::format("cannot plot to {}: the file's name ends in {}", path, results::picture_endings));
   return false;
 }
 

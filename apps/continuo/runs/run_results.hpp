@@ -1,25 +1,39 @@
 // What every verb does with a run that it has: files, pictures, a summary, how it ended.
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
+#include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/runs/motion_table.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 
+#include <continuo/results/figure.hpp>
+#include <continuo/results/motion_curves.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
 
 struct RunOutputs {
   std::string motion{}, events{}, plot{}, manifest{};  // files; empty: not wanted
-  bool json = false;
+  std::vector<std::string> plot_texts{};               // what --plot says besides: plot_text.hpp
+  results::PictureSize size{};                         // of the plot
+  bool json = false, no_sketch = false;
 
   /// How many of them are for standard output.
   int to_standard_output() const { return json + (motion == "-") + (events == "-") + (manifest == "-"); }
   bool data_to_standard_output() const { return to_standard_output() > 0; }
 };
-/// -o, --events, --plot, --manifest and --json.
+/// -o, --events, --plot, --size, --no-sketch, --manifest and --json.
 void add_outputs(CLI::App& verb, RunOutputs& outputs);
+/// Whether a picture moves, by its ending.
+bool moves(const std::string& picture);
+/// Whether a picture of the motion is wanted: in a file, or small in the terminal.
+bool wants_picture(const RunOutputs& outputs);
+/// The curves of the picture that is wanted; null where none is, nothing where the text of --plot is wrong.
+std::optional<std::unique_ptr<results::MotionCurves>> curves_for(const RunOutputs& outputs, const Prepared& prepared);
 /// Said before a long run, not after it.
 bool can_be_written(const RunOutputs& outputs);
 /// Where the manifest goes: as asked, or beside the table; empty for nowhere.
@@ -28,11 +42,12 @@ std::string manifest_file(const RunOutputs& outputs);
 bool needs_rows(const RunOutputs& outputs);
 
 /// Writes and prints what is wanted. Checks are meant for a run as its model is written.
+/// `curves`: those of the motion, where somebody has followed them; else the picture shows the rows.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
-              const RunOutputs& outputs, bool as_written);
+              const RunOutputs& outputs, bool as_written, results::MotionCurves* curves = nullptr);
 
 /// The same, with the table of -o as it was written during the run.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
-              const RunOutputs& outputs, bool as_written, MotionTable& motion);
+              const RunOutputs& outputs, bool as_written, MotionTable& motion, results::MotionCurves* curves = nullptr);
 
 }  // namespace continuo::app

@@ -6,6 +6,7 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/results/method_colors.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/runs/methods.hpp>
 #include <continuo/solve/catalogue.hpp>
@@ -158,11 +159,16 @@ std::string convergence_text(const Convergence& study, const model::Model& model
 
 results::Figure convergence_figure(const Convergence& study, const std::string& title) {
   const std::string x_label = study.by_tolerance ? "tolerance" : "step";
+  std::vector<std::string> names;
+  for (const MethodConvergence& method : study.methods) names.push_back(method.method);
+  const std::vector<std::size_t> colors = results::colors_of_methods(names);
   const auto panel_of = [&](std::string label, double StepErrors::* error, std::string suffix = {}) {
     results::Panel panel{
         .x_label = x_label, .y_label = std::move(label), .curves = {}, .logarithmic_x = true, .logarithmic_y = true};
-    for (const MethodConvergence& method : study.methods) {
-      results::Curve curve{.label = method.method + suffix, .x = {}, .y = {}};
+    for (std::size_t i = 0; i < study.methods.size(); ++i) {
+      const MethodConvergence& method = study.methods[i];
+      results::Curve curve{.label = method.method + suffix, .x = {}, .y = {}, .number = colors[i]};
+      if (!suffix.empty()) curve.style = results::Curve::Style::dashed_line;
       bool some = false;
       for (const StepErrors& point : method.points) {
         const bool shown = point.*error > 0 && point.*error <= 10;  // beyond that it is no approximation

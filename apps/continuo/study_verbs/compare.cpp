@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
+#include <continuo/results/method_colors.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/runs/kind.hpp>
@@ -80,11 +81,16 @@ results::Figure figure_of(const model::ModelProgram& program, const Comparison& 
                        .y_label = "error",
                        .curves = {},
                        .logarithmic_y = true};
-  for (const Contender& contender : comparison.contenders) {
+  std::vector<std::string> methods;
+  for (const Contender& contender : comparison.contenders) methods.push_back(contender.method);
+  const std::vector<std::size_t> colors = results::colors_of_methods(methods);
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    const Contender& contender = comparison.contenders[i];
     if (!contender.simulated.run) continue;
     const auto plot = results::plots_of(program, *contender.simulated.run).front();
-    motion.curves.push_back({contender.label(), plot.x, plot.y.front()});
-    error.curves.push_back({contender.label(), contender.times, contender.errors});
+    motion.curves.push_back({.label = contender.label(), .x = plot.x, .y = plot.y.front(), .number = colors[i]});
+    error.curves.push_back(
+        {.label = contender.label(), .x = contender.times, .y = contender.errors, .number = colors[i]});
   }
   motion.curves.push_back({"reference", reference.x, reference.y.front(), "#000000"});
   return {.title = program.model.name, .panels = {std::move(motion), std::move(error)}};

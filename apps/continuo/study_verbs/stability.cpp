@@ -24,6 +24,7 @@
 #include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
+#include <continuo/results/method_colors.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/stability.hpp>
@@ -146,11 +147,13 @@ nlohmann::json json_of(const std::vector<Region>& regions, const std::vector<Con
 std::vector<std::size_t> add_regions(const std::vector<Region>& regions, results::Panel& panel) {
   using enum results::Curve::Style;
   std::vector<results::Curve> areas, crossings;
-  std::vector<std::size_t> colors;
-  for (const auto& [method, region] : regions) {
-    colors.push_back(panel.curves.size());
-    const std::string color(results::color_of(colors.back()));
-    results::Curve outline{method, region.x, region.y};
+  std::vector<std::string> names;
+  for (const auto& [method, region] : regions) names.push_back(method);
+  std::vector<std::size_t> colors = results::colors_of_methods(names);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const auto& [method, region] = regions[i];
+    const std::string color(results::color_of(colors[i]));
+    results::Curve outline{.label = method, .x = region.x, .y = region.y, .number = colors[i]};
     const double up = std::isfinite(region.imaginary_limit) ? region.imaginary_limit : 0;
     if (region.x.empty() && up > 0) outline.x = {0, 0}, outline.y = {-up, up};
     if (outline.x.empty()) continue;

@@ -68,40 +68,36 @@ std::string places_of(const runs::Recording& recording) {
   return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", times.size(), times.front(), times.back());
 }
 
+/// The curves of the picture that is wanted, through the rows of the recording; nothing where their text is wrong.
+std::optional<std::unique_ptr<results::MotionCurves>> curves_for(const ReplayRequest& request, const Opened& opened) {
+  return curves_for(request.outputs, {.exit = done,
+                                      .loaded = opened.loaded,
+                                      .program = opened.program,
+                                      .experiment = runs::head_of(opened.recording).experiment,
+                                      .decides_size = runs::head_of(opened.recording).decides_size});
+}
+
 ExitCode replay(const ReplayRequest& request) {
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
+  const auto curves = curves_for(request, opened);
+  if (!curves) return usage;
   const runs::Recording& recording = opened.recording;
   if (!runs::is_whole(recording))
     mention(fmt::format("{} was cut off after t = {:g}", request.file, runs::last_time(recording)));
   const model::Simulated simulated = runs::replay(opened.program, recording);
-  const ExitCode exit =
-      tell(simulated, opened.loaded.source, *opened.program, request.outputs, runs::head_of(recording).as_written);
+  const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
+                             runs::head_of(recording).as_written, curves->get());
   if (simulated.run && !request.outputs.data_to_standard_output())
     print(fmt::format("places  {}\n", places_of(recording)));
   return exit;
-}
-
-/// Whether the run would go on to other bits than those it was recorded with: said, and refused.
-bool has_changed(const ReplayRequest& request, const Opened& opened) {
-  const model::RunHead& head = runs::head_of(opened.recording);
-  if (head.version != CONTINUO_VERSION) {
-    say(fmt::format("{} was recorded by Continuo {}, this is {}: its steps may differ; run the model again",
-                    request.file, head.version, CONTINUO_VERSION));
-    return true;
-  }
-  if (head.data != checksum_of_tables(*opened.program)) {
-    say(fmt::format("{}: a table that {} reads has changed since: run the model again", request.file, head.file));
-    return true;
-  }
-  return false;
 }
 
 ExitCode resume(const ReplayRequest& request) {
   if (!can_be_written(request.record)) return usage;
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
-  if (has_changed(request, opened)) return usage;
+  if (has_changed(runs::head_of(opened.recording), *opened.program, request.file)) return usage;
   const runs::Recording& recording = opened.recording;
   const std::vector<double> times = runs::checkpoints_of(recording);
   if (times.empty()) {
@@ -119,6 +115,8 @@ ExitCode resume(const ReplayRequest& request) {
     say("--max-steps is for equations");
     return usage;
   }
+  const auto curves = curves_for(request, opened);
+  if (!curves) return usage;
   mention(fmt::format("resumes from t = {:g}", from));
   RunFile file(request.record);
   model::RunHead head = runs::head_of(recording);
@@ -136,8 +134,8 @@ ExitCode resume(const ReplayRequest& request) {
                          .progress = plan ? progress.over(from, plan->to) : nullptr},
                         log);
   }();
-  const ExitCode exit =
-      tell(simulated, opened.loaded.source, *opened.program, request.outputs, head.as_written && !request.until);
+  const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
+                             head.as_written && !request.until, curves->get());
   return file.close() || exit != done ? exit : usage;
 }
 

@@ -21,8 +21,9 @@
 #include <apps/continuo/verbs/run.hpp>
 #include <fmt/format.h>
 
+#include <continuo/results/motion_curves.hpp>
 #include <continuo/runs/kind.hpp>
-#include <continuo/runs/run.hpp>
+#include <continuo/runs/watched_run.hpp>
 #include <continuo/solve/catalogue.hpp>
 
 namespace continuo::app {
@@ -51,11 +52,12 @@ runs::Log* log_of(const RunRequest& request, const Prepared& prepared, RunFile& 
 
 /// Families are no run: nothing of it can be written, which is said and not passed over.
 bool shows_families(const RunRequest& request) {
-  const char* unused = !request.outputs.events.empty()     ? "--events"
-                       : !request.outputs.manifest.empty() ? "--manifest"
-                       : request.estimate_error            ? "--estimate-error"
-                       : request.experiment.output         ? "--output"
-                                                           : nullptr;
+  const char* unused = !request.outputs.events.empty()       ? "--events"
+                       : !request.outputs.plot_texts.empty() ? "--plot in words"
+                       : !request.outputs.manifest.empty()   ? "--manifest"
+                       : request.estimate_error              ? "--estimate-error"
+                       : request.experiment.output           ? "--output"
+                                                             : nullptr;
   if (unused == nullptr) return true;
   say(fmt::format("--family shows solutions over a parameter, of which there is no {}: leave it out", unused));
   return false;
@@ -82,23 +84,42 @@ const char* not_of_sweep(const RunRequest& request) {
   return nullptr;
 }
 
-ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, Prepared& base) {
+ExitCode sweep(RunRequest& request, const std::vector<SweepText>& texts, Prepared& base) {
+  if (moves(request.outputs.plot)) {
+    say(fmt::format("{} is a film of one run; for several the name ends in {}", request.outputs.plot,
+                    results::picture_endings));
+    return usage;
+  }
   if (const char* option = not_of_sweep(request)) {
     say(fmt::format("{} is for one run, and {} asks for several", option, texts.front().text));
     return usage;
   }
   const std::optional<Sweep> asked = read_sweep(texts, base);
   if (!asked) return usage;
+  request.outputs.no_sketch = true;
+  const auto curves = curves_for(request.outputs, base);
+  if (!curves) return usage;
   base.experiment.estimate_error = request.estimate_error;
   base.experiment.doubts = true;
   const std::vector<SweepMember> members = [&] {
     Progress progress;
-    return run_sweep(*asked, base, progress.parts());
+    return run_sweep(*asked, base, curves->get(), progress.parts());
   }();
   return tell_sweep(*asked, members, base, request.outputs);
 }
 
-ExitCode run(RunRequest request, const ShowFamilies& show_families) {
+/// The run, shown to the curves where there are any. Where they have not seen it, they are made anew, and the picture
+/// shows the rows.
+model::Simulated run_and_show(const Prepared& prepared, const runs::RunRequest& asked,
+                              std::unique_ptr<results::MotionCurves>& curves) {
+  if (!curves) return runs::run(prepared.program, prepared.experiment, asked);
+  auto anew = std::make_unique<results::MotionCurves>(*curves);
+  runs::WatchedRun watched = runs::run(prepared.program, prepared.experiment, asked, *curves);
+  if (!watched.is_shown) curves = std::move(anew);
+  return std::move(watched.simulated);
+}
+
+ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteFilm& write_film) {
   const std::vector<SweepText> swept = take_sweep(request.experiment);
   if (!reads_standard_input_once({request.experiment.file, request.boundary.guess, request.experiment.initial_from}) ||
       !can_be_written(request.outputs) || !can_be_written(request.record))
@@ -120,6 +141,15 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families) {
     const auto range = read_family(request.boundary, prepared);
     return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
   }
+  const std::string film_path = moves(request.outputs.plot) ? std::exchange(request.outputs.plot, {}) : std::string();
+  if (!film_path.empty() && !request.outputs.plot_texts.empty()) {
+    say(fmt::format("{} shows the scene of the model; for plots the name ends in {}", film_path,
+                    results::picture_endings));
+    return usage;
+  }
+  if (!film_path.empty()) request.outputs.no_sketch = true;
+  auto curves = curves_for(request.outputs, prepared);
+  if (!curves) return usage;
   RunFile file(request.record);
   MotionTable motion(request.outputs.motion, *prepared.program);
   const model::OnRow on_row =
@@ -129,21 +159,26 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families) {
     prepared.experiment.progress = watcher_of(prepared, progress);
     prepared.experiment.estimate_error = request.estimate_error;
     prepared.experiment.doubts = true;
-    return runs::run(prepared.program, prepared.experiment,
-                     {.boundary = *boundary, .log = log_of(request, prepared, file)}, on_row);
+    return run_and_show(prepared, {.boundary = *boundary, .log = log_of(request, prepared, file), .on_row = on_row},
+                        *curves);
   }();
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
-                             request.experiment.as_written() && request.boundary.as_written(), motion);
+                             request.experiment.as_written() && request.boundary.as_written(), motion, curves->get());
+  if (!film_path.empty() && exit == done) {
+    if (const ExitCode filmed = write_film(request.experiment, film_path); filmed != done) return filmed;
+  }
   return file.close() || exit != done ? exit : usage;
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
+void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families, WriteFilm write_film) {
   static constexpr std::string_view examples =
       "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
       "  continuo run ball.sim -o ball.csv --plot ball.svg          all rows, and a plot\n"
       "  continuo run gas.sim -o gas.nc                             the same for xarray, bodies as arrays\n"
+      "  continuo run ball.sim --plot phase.svg --plot \"h' against h\"   what to draw, in words\n"
+      "  continuo run ball.sim --plot ball.gif                      the scene as a film (.gif, .mp4)\n"
       "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
       "  continuo run spring.sim --set k=1,2,5 --plot k.svg         several runs: one table, one picture\n"
       "  continuo run spring.sim --set k=1..5/9 --initial x=1,2     nine values of k, each from two starts\n"
@@ -172,7 +207,9 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
   verb->add_flag("--estimate-error", request->estimate_error,
                  "Estimates the global error by a second run with a tolerance a hundred times smaller");
   add_boundary(*verb, request->boundary);
-  verb->callback([&exit, request, show_families = std::move(show_families)] { exit = run(*request, show_families); });
+  verb->callback([&exit, request, show_families = std::move(show_families), write_film = std::move(write_film)] {
+    exit = run(*request, show_families, write_film);
+  });
 }
 
 }  // namespace continuo::app

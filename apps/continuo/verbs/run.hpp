@@ -17,7 +17,13 @@ using ShowFamilies =
     std::function<ExitCode(const Prepared&, const boundary::BoundaryRequest&,
                            const boundary::BoundaryRequest::Along& range, const std::string& of, const RunOutputs&)>;
 
-/// `show_families` is empty in the program that never parses --family (program_for).
-void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families);
+/// Writes the scene of a model as a film.
+using WriteFilm = std::function<ExitCode(const ExperimentOptions&, const std::string& path)>;
+
+/// That of the view: view.cpp.
+ExitCode film(const ExperimentOptions& experiment, const std::string& path);
+
+/// `show_families` is empty in the program that never parses --family (program_for), and `write_film` in the other one.
+void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families, WriteFilm write_film);
 
 }  // namespace continuo::app

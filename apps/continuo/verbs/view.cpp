@@ -1,4 +1,5 @@
 // continuo view: the motion live, in the browser.
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -19,6 +20,8 @@
 #include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
+#include <apps/continuo/verbs/own_session.hpp>
+#include <apps/continuo/verbs/run.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -27,6 +30,7 @@
 #include <continuo/live/server/gzip.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
+#include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::app {
 namespace {
@@ -41,13 +45,17 @@ struct ViewRequest {
   std::string page_file;
   std::optional<double> speed;
   bool no_open = false, paused = false, json = false;
+  bool for_others = false, allow_save = false;
+  std::string viewers = "watch";
+  std::optional<std::size_t> own_session;
   RecordingRequest recording;
 };
 
-/// Beside the model, in the tree that the command was built in, or where it is installed.
+/// Beside the model, or in the folder one is in where none is named; else in the tree that the command was built in, or
+/// where it is installed.
 std::vector<live::GalleryModel> gallery_for(const std::string& file) {
   std::error_code error;
-  const fs::path folder = fs::absolute(file, error).parent_path();
+  const fs::path folder = file.empty() ? fs::current_path(error) : fs::absolute(file, error).parent_path();
   const fs::path command = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const fs::path& place : {folder.filename() == "models" ? folder : folder / "models", command / "../models",
                                 command / "../share/continuo/models", fs::path(CONTINUO_INSTALLED_MODELS)}) {
@@ -97,25 +105,41 @@ std::optional<std::string> page_of(const ViewRequest& request) {
   return live::stored(contents_of(request.page_file));
 }
 
-ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, live::Server& server) {
+/// Where the motion can be seen.
+void print_addresses(const ViewRequest& request, const live::Server& server) {
+  if (request.for_others) {
+    print(fmt::format("presenter: {}\nviewers:   {}\n", server.url(), server.viewers_url()));
+  } else {
+    print(fmt::format("{}\n", server.url()));
+  }
+  std::fflush(stdout);
+}
+
+ExitCode show_to_the_world(const ViewRequest& request, std::vector<std::string> models, live::Session& session,
+                           live::Server& server) {
   const std::atomic<bool>& interrupted = interrupt_flag();
   live::Loop loop(session, [&](std::uint64_t client, const std::string& problem) { server.complain(client, problem); });
+  OwnSessions own_sessions(std::move(models));
   std::atomic<bool> begun = request.paused;
   server.start(
       {.command = [&](live::Command command, std::uint64_t client) { return loop.post(std::move(command), client); },
        .rate = [&](double pictures) { loop.set_rate(pictures); },
        .attached =
-           [&](std::size_t) {
-             if (!begun.exchange(true)) loop.post({"play", R"({"do": "play"})"}, 0);
-           }});
+           [&](std::size_t presenters) {
+             if (presenters > 0 && !begun.exchange(true)) loop.post({"play", R"({"do": "play"})"}, 0);
+           },
+       .watch = [&] { return loop.watch(); },
+       .own_session = [&](const live::OwnSession& wanted) { return own_sessions.start(wanted); }});
   loop.start();
   const bool quiet = request.no_open;
   mention("Ctrl-C ends the view");
   if (request.json) {
-    answer("continuo.view/1", {{"address", server.url()}, {"file", name_of_file(request.experiment.file)}});
+    nlohmann::ordered_json fields{{"address", server.url()}, {"file", name_of_file(request.experiment.file)}};
+    if (request.for_others) fields["viewers"] = server.viewers_url();
+    answer("continuo.view/1", std::move(fields));
     print_answer_now();
   } else {
-    print(fmt::format("{}\n", server.url()));
+    print_addresses(request, server);
   }
   if (!quiet) open_browser(server.url());
   while (!interrupted.load()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -128,7 +152,12 @@ ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, l
 ExitCode open_session(const ViewRequest& request, live::Session& session) {
   const model::Loaded loaded = session.open_file();
   show(loaded.diagnostics, loaded.source);
-  if (!loaded.model) return wrong_model;
+  if (!loaded.model) {
+    if (request.recording.wanted()) return wrong_model;
+    session.open_mistaken(loaded);
+    say("the page opens at the first error; the model runs as soon as its text is mended there");
+    return done;
+  }
   if (!session.is_open()) {
     show(session.problems(), loaded.source);
     if (!runs::kind_of(*loaded.model).has_start)
@@ -143,16 +172,45 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   return done;
 }
 
+/// Whether the model can be read, and no output is the model; says what is wrong. Without a model the page begins with
+/// the gallery.
+bool files_are_in_order(const ViewRequest& request, const std::vector<live::GalleryModel>& gallery) {
+  const std::string& file = request.experiment.file;
+  if (file.empty()) {
+    if (gallery.empty()) say("there is no gallery here; name a model: `continuo view FILE`");
+    if (request.recording.wanted()) say("--export and --record need a model: `continuo view FILE`");
+    return !gallery.empty() && !request.recording.wanted();
+  }
+  if (!readable(file)) {
+    if (std::error_code error; fs::exists(file, error)) return false;
+    const std::string wanted = fs::path(file).stem().string();
+    std::vector<std::string> names;
+    for (const live::GalleryModel& model : gallery) names.push_back(model.name);
+    const bool known = std::ranges::find(names, wanted) != names.end();
+    const auto near = known ? std::optional(wanted) : model::suggest(wanted, names);
+    const auto found = near ? std::ranges::find(gallery, *near, &live::GalleryModel::name) : gallery.end();
+    // What is near in the folder of the file has been said.
+    if (found != gallery.end() && fs::proximate(found->path).parent_path() != fs::path(file).parent_path())
+      say(fmt::format("the gallery has {}", fs::proximate(found->path).string()));
+    say("`continuo view` alone opens the gallery");
+    return false;
+  }
+  return true;
+}
+
 ExitCode view(ViewRequest& request) {
+  const std::vector<live::GalleryModel> gallery = gallery_for(request.experiment.file);
+  if (request.own_session) return serve_own_session(request.experiment.file, gallery, *request.own_session);
   if (request.experiment.file == standard_input) {
     say("view needs a file, which its page shows and saves: give it a name, or let run and report read standard input");
     return usage;
   }
-  if (!readable(request.experiment.file)) return usage;
+  if (!files_are_in_order(request, gallery)) return usage;
   const auto page = page_of(request);
   if (!page) return usage;
   request.server.page = *page;
   request.server.model_path = request.experiment.file;
+  request.server.may_save = !request.for_others || request.allow_save;
   const auto set_up = [&](live::Session& session) { return open_session(request, session); };
   if (request.recording.wanted()) {
     request.recording.model = request.experiment.file;
@@ -169,15 +227,29 @@ ExitCode view(ViewRequest& request) {
     say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; other clients can use "
         "the address (docs/protocol.md)");
   live::Server server(request.server, [](const std::string& text) { say(text); });
-  live::Session session(live::steady_seconds, server,
-                        {.path = request.experiment.file, .gallery = gallery_for(request.experiment.file)});
+  const live::Place place{.path = request.experiment.file, .gallery = gallery, .writable = request.server.may_save};
+  std::vector<std::string> models;
+  if (!place.path.empty()) models.push_back(place.path);
+  for (const live::GalleryModel& model : place.gallery) models.push_back(model.path);
+  live::Session session(live::steady_seconds, server, place);
   if (const Status status = server.listen(); !status) {
     say(status.message);
     return usage;
   }
   if (const ExitCode exit = set_up(session); exit != done) return exit;
-  return show_to_the_world(request, session, server);
+  return show_to_the_world(request, std::move(models), session, server);
 }
+
+}  // namespace
+
+ExitCode film(const ExperimentOptions& experiment, const std::string& path) {
+  ViewRequest request;
+  request.experiment = experiment;
+  request.recording = {.page = {}, .pictures = path, .model = experiment.file, .until = experiment.until};
+  return record(request.recording, [&](live::Session& session) { return open_session(request, session); }, {});
+}
+
+namespace {
 
 std::string speed_fault(const std::string& text) {
   const auto speed = number_of(text);
@@ -194,15 +266,19 @@ std::string port_fault(const std::string& text) {
 
 void add_view(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
+      "  continuo view                                              the gallery\n"
       "  continuo view models/spring_pendulum.sim                   live in the browser: drag the mass, slide k\n"
       "  continuo view ball.sim --method euler --step 0.1           by Euler's method\n"
       "  continuo view ball.sim --export ball.html                  one page that replays the run, for a lecture\n"
       "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
-      "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
+      "  continuo view ball.sim --record ball.gif                   a film\n"
+      "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for a class: an address for you, one for viewers\n"
+      "  continuo view ball.sim --listen 0.0.0.0 --viewers own      and each of them may change it for themselves\n";
   Verb* verb = add_verb(app, listed("view"), examples, {wrong_model});
   verb->json_examples = {"continuo view models/pendulum.sim --export pendulum.html --until 1 --json"};
   auto request = std::make_shared<ViewRequest>();
   add_model(*verb, request->experiment);
+  verb->get_option("file")->required(false)->description("The model; without one the page begins with the gallery");
   add_method(*verb, request->experiment);
   verb->add_option("--until", request->experiment.until, "End time of the run, for --export and --record")
       ->type_name("T");
@@ -211,9 +287,11 @@ void add_view(CLI::App& app, ExitCode& exit) {
       ->check(CLI::Validator(speed_fault, ""));
   verb->add_flag("--paused", request->paused, "Starts in pause");
   verb->add_flag("--no-open", request->no_open, "Prints the address and opens no browser");
-  verb->add_option("--listen", request->server.address,
-                   "Address of the server: 127.0.0.1 is reachable from this computer only")
-      ->type_name("ADDRESS");
+  const CLI::Option* listen =
+      verb->add_option(
+              "--listen", request->server.address,
+              "Address of the server: 127.0.0.1 is reachable from this computer only, 0.0.0.0 from the network")
+          ->type_name("ADDRESS");
   verb->add_option("--port", request->server.port, "Port of the server (default: any free port)")
       ->type_name("N")
       ->check(CLI::Validator(port_fault, ""));
@@ -221,12 +299,22 @@ void add_view(CLI::App& app, ExitCode& exit) {
   writes_file(*verb,
               verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends"));
   writes_pictures(*verb, verb->add_option("--record", request->recording.pictures,
-                                          "Writes pictures to a folder, or a video (.mp4, by ffmpeg)"));
+                                          "Writes pictures to a folder, or a film (.gif; .mp4 by ffmpeg)"));
   verb->add_option("--fps", request->recording.rate, "Pictures per second, for --export and --record")
       ->type_name("N")
       ->check(CLI::Range(1, 120));
   verb->add_flag("--json", request->json, "The address, or the files of --export and --record, as one JSON object");
-  verb->callback([&exit, request] { exit = view(*request); });
+  verb->add_flag("--allow-save", request->allow_save, "With --listen: the presenter's page may write the file");
+  verb->add_option("--viewers", request->viewers,
+                   "What the viewers' address allows: watch, or own, a session of one's own beside the presenter's")
+      ->type_name("watch|own")
+      ->check(CLI::IsMember({"watch", "own"}));
+  verb->add_option("--own-session", request->own_session)->group("");  // of a viewer, begun by the presenter's
+  verb->callback([&exit, request, listen] {
+    request->for_others = listen->count() > 0;
+    request->server.own_sessions = request->viewers == "own";
+    exit = view(*request);
+  });
 }
 
 }  // namespace continuo::app

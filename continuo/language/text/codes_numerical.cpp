@@ -162,6 +162,12 @@ there is one, measures the same kind of quantity as the state. Bodies begin wher
 boundary-value problem has no start.
 
 Fix: for example --initial x=3, --initial "x'=0.5 [m/s]", --initial "u[1]=2".)"},
+    Code{"E348", "the text is no plot",
+         R"(--plot takes the name of a picture, or plots in words: the curves, what they are drawn against (t where
+nothing is said), for families the times of their profiles, and `log x`, `log y` or `log xy` for logarithmic axes:
+
+  --plot ball.svg --plot "h, h'" --plot "h' against h"
+  --plot heat.png --plot "u[1..N] against index at 0, 1, 5; u[3] against t log xy")"},
     Code{"E349", "the guess does not fit the model",
          R"(--guess reads the initial guess from a CSV file, as written by `continuo run -o`: a column `t` and at
 least one column with the name of a state, `y` or `y'`, at times within the run.)"},
