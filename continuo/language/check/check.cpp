@@ -79,9 +79,9 @@ void nothing_to_simulate(const ast::Model& tree, Report& report) {
 
 }  // namespace detail
 
-Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options) {
+Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options, FileReach files) {
   using namespace detail;
-  Report report(source);
+  Report report(source, files);
   Model model = empty_model(tree, source);
   const TimeUnit time = find_time_unit(tree, report);
   store(time, model);

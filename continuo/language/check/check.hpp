@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <continuo/language/check/check_options.hpp>
+#include <continuo/language/check/names/file_reach.hpp>
 #include <continuo/language/model.hpp>
 #include <continuo/language/syntax/ast.hpp>
 #include <continuo/language/text/diagnostic.hpp>
@@ -24,6 +25,7 @@ struct Checked {
   std::vector<Diagnostic> diagnostics;  // in order of place
 };
 
-[[nodiscard]] Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options = {});
+[[nodiscard]] Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options = {},
+                            FileReach files = FileReach::anywhere);
 
 }  // namespace continuo::model

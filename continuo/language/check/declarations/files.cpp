@@ -6,12 +6,42 @@
 #include <fmt/format.h>
 
 #include <continuo/language/check/declarations/files.hpp>
+#include <continuo/language/check/declarations/folder_file.hpp>
 
 namespace continuo::model::detail {
 
+namespace {
+
+std::string folder_of(const Report& report) {
+  return std::filesystem::path(report.source().name()).parent_path().string();
+}
+
+/// Of a text that came over a network: `name` is as the text has it.
+std::optional<Table> points_in_folder(const std::string& name, Span span, Table::Between between,
+                                      std::string_view column, Report& report) {
+  const Result<std::string> text = read_from_folder(folder_of(report), name);
+  if (!text) {
+    report.fail("E270", span, "this file is not read", text.status().message,
+                "files are found relative to the model's folder, and not outside of it");
+    return std::nullopt;
+  }
+  if (!column.empty()) {
+    if (Result<Table> named = parse_table(*text, name, between, {}, column)) return *std::move(named);
+  }
+  Result<Table> read = parse_table(*text, name, between);
+  if (read) return *std::move(read);
+  // Its place only: the message quotes what stands there.
+  report.fail("E272", span, "this file is not a table", fmt::format("{} is not as it has to be", read.status().place),
+              "`continuo check`, where the file is, says more");
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::string file_of(const std::string& name, Span span, Report& report) {
   namespace fs = std::filesystem;
-  const fs::path path = fs::path(report.source().name()).parent_path() / name;
+  if (report.files() == FileReach::model_folder && !name.empty()) return name;  // points_of looks for it
+  const fs::path path = fs::path(folder_of(report)) / name;
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) {
     report.fail("E270", span, "there is no such file", fmt::format("looked for {}", path.string()),
@@ -24,6 +54,7 @@ std::string file_of(const std::string& name, Span span, Report& report) {
 std::optional<Table> points_of(const std::string& file, Span span, Table::Between between, std::string_view column,
                                Report& report) {
   if (file.empty()) return std::nullopt;
+  if (report.files() == FileReach::model_folder) return points_in_folder(file, span, between, column, report);
   if (!column.empty()) {
     if (Result<Table> named = read_table(file, between, {}, column)) return *std::move(named);
   }

@@ -10,9 +10,11 @@
 
 namespace continuo::model::detail {
 
-/// Relative to the folder of the model; E270 and empty where there is no such file.
+/// Relative to the folder of the model; E270 and empty where there is no such file. Where only files of that folder may
+/// be read it is the name itself: `points_of` finds and reads the file in one.
 [[nodiscard]] std::string file_of(const std::string& name, Span span, Report& report);
-/// The column of this name where the file has one, else the second; E272 where it is no table.
+/// The column of this name where the file has one, else the second; E272 where it is no table. Of the folder of the
+/// model alone, as the report's reach says, the messages quote nothing of the file.
 [[nodiscard]] std::optional<Table> points_of(const std::string& file, Span span, Table::Between between,
                                              std::string_view column, Report& report);
 

@@ -45,7 +45,7 @@ std::string unit_or_nothing(const Measured& measured) {
 }
 
 Report Report::silent() const {
-  Report other(source_);
+  Report other(source_, files_);
   other.silent_ = true;
   return other;
 }

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include <continuo/language/check/names/file_reach.hpp>
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/language/text/source.hpp>
 #include <continuo/symbolic/units/unit_check.hpp>
@@ -17,7 +18,7 @@ namespace continuo::model::detail {
 /// Keeps one message per place and code: the members of a family share their text.
 class Report {
  public:
-  explicit Report(const Source& source) : source_(source) {}
+  explicit Report(const Source& source, FileReach files = FileReach::anywhere) : source_(source), files_(files) {}
   /// Drops every message: for trying what may have been meant.
   [[nodiscard]] Report silent() const;
   [[nodiscard]] bool is_silent() const { return silent_; }
@@ -36,9 +37,12 @@ class Report {
   [[nodiscard]] std::string_view slice(Span span) const { return source_.slice(span); }
   [[nodiscard]] std::string quote(Span span) const;  // `text`, cut off where it is long
   [[nodiscard]] const Source& source() const { return source_; }
+  /// Which files the text may have read, and messages quote.
+  [[nodiscard]] FileReach files() const { return files_; }
 
  private:
   const Source& source_;
+  FileReach files_;
   bool silent_ = false;
   std::vector<Diagnostic> diagnostics_{};
   std::set<std::tuple<std::string, std::uint32_t, std::uint32_t>> reported_{};
