@@ -19,14 +19,14 @@ from urllib.parse import parse_qs, urlsplit
 class View:
     """A socket of a live view: `say` commands, `hear` texts (as dict) and frames (as Frame)."""
 
-    def __init__(self, address, origin=None, timeout=10):
+    def __init__(self, address, origin=None, timeout=10, own=False):
         parts = urlsplit(address)
         token = parse_qs(parts.query)["token"][0]
         self.socket = socket.create_connection((parts.hostname, parts.port), timeout)
         self.waiting = b""
         self.model = None
         key = base64.b64encode(os.urandom(16)).decode()
-        lines = [f"GET /live?token={token} HTTP/1.1", f"Host: {parts.netloc}", "Upgrade: websocket",
+        lines = [f"GET /live?token={token}{'&own' if own else ''} HTTP/1.1", f"Host: {parts.netloc}", "Upgrade: websocket",
                  "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
         if origin:
             lines.append(f"Origin: {origin}")

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -16,6 +17,14 @@ namespace continuo::live {
 
 /// Seconds of a clock that never goes backwards.
 [[nodiscard]] double steady_seconds();
+
+/// What a session is at, and for how long: to be told to who waits for it.
+struct Work {
+  /// Commands, such as one that reads another model; or the motion.
+  enum class Kind { commands, motion };
+  Kind kind;
+  double seconds;
+};
 
 /// The thread of a session.
 class Loop {
@@ -33,8 +42,12 @@ class Loop {
   /// Returns when the turn that is being made has ended.
   void stop();
 
-  /// From any thread. False: there is too much to do already, ask again in a moment.
+  /// From any thread. False: there is too much to do already, ask again in a moment. A step that takes long is given up
+  /// for the command, unless that is a step too, and begun again after it: who drags a slider is answered at once.
   bool post(Command command, std::uint64_t client);
+  /// From any thread, some twenty times a second: gives up the step that has become too long for commands that wait.
+  /// Returns what the session is at, if anything.
+  std::optional<Work> watch();
   /// Sets the number of pictures a second, from any thread.
   void set_rate(double pictures) { rate_.store(pictures); }
 
@@ -44,15 +57,19 @@ class Loop {
     std::uint64_t client;
   };
   static constexpr std::size_t most_waiting = 1000;
+  static constexpr double longest_wait = 0.1;  // seconds that commands wait for a step
 
   void run();
-  void obey_all();
+  void obey(const std::vector<Waiting>& waiting);
+  void begin(Work::Kind kind);
+  void make_way();
 
   Session& session_;
   Complain complain_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<Waiting> waiting_;
+  std::optional<Work> work_;  // its `seconds` are those of the clock when it began
   bool stopping_ = false;
   std::atomic<double> rate_{60};
   std::thread thread_;

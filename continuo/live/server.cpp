@@ -1,14 +1,18 @@
 // continuo/live/server.cpp
 // Listens, accepts connections, and hands slices and messages to all clients.
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/strand.hpp>
 #include <fmt/format.h>
 #include <pthread.h>
+#include <sys/socket.h>
 
-#include <continuo/language/load.hpp>
+#include <continuo/language/load_confined.hpp>
 #include <continuo/live/server/client.hpp>
+#include <continuo/live/server/reachable_name.hpp>
 #include <continuo/live/session/messages.hpp>
 
 namespace continuo::live {
@@ -41,13 +45,15 @@ Status Server::listen() {
             .message =
                 fmt::format("cannot listen at {}:{}: {}", parts_->options.address, endpoint.port(), error.message())};
   parts_->port = parts_->acceptor->local_endpoint().port();
-  parts_->origin_guard.emplace(parts_->token, parts_->options.address, parts_->port);
+  parts_->origin_guard.emplace(parts_->tokens, parts_->options.address, parts_->port);
   return {};
 }
 
 void Server::start(ServerHooks hooks) {
   parts_->hooks = std::move(hooks);
-  parts_->accept();
+  if (parts_->acceptor->is_open()) parts_->accept();
+  if (parts_->hooks.watch) parts_->watch_work();
+  parts_->keeps_running.emplace(parts_->io.get_executor());
   parts_->thread = std::thread([parts = parts_] { parts->io.run(); });
   pthread_setname_np(parts_->thread.native_handle(), "server");
 }
@@ -56,6 +62,8 @@ void Server::stop() {
   if (!parts_->thread.joinable()) return;
   asio::post(parts_->io, [parts = parts_] {
     parts->stopping = true;
+    parts->keeps_running.reset();
+    parts->work_timer.cancel();
     error_code ignored;
     parts->acceptor->close(ignored);
     for (const auto& [number, client] : parts->clients) client->close();
@@ -77,9 +85,23 @@ unsigned short Server::port() const {
 }
 
 std::string Server::url() const {
-  const std::string& address = parts_->options.address;
-  const bool six = address.find(':') != std::string::npos;
-  return fmt::format("http://{}:{}/?token={}", six ? "[" + address + "]" : address, parts_->port, parts_->token);
+  return fmt::format("http://{}/?token={}", parts_->host(), parts_->tokens.presenter);
+}
+
+std::string Server::viewers_url() const {
+  return parts_->viewers_address();
+}
+
+void Server::adopt(int socket, const std::string& request) {
+  asio::post(parts_->io, [parts = parts_, socket, request] {
+    tcp::socket connection(parts->io);
+    error_code error;
+    sockaddr_storage name{};
+    socklen_t size = sizeof name;
+    ::getsockname(socket, reinterpret_cast<sockaddr*>(&name), &size);
+    connection.assign(name.ss_family == AF_INET6 ? tcp::v6() : tcp::v4(), socket, error);
+    if (!error) serve_owner(parts, std::move(connection), request);
+  });
 }
 
 std::size_t Server::clients() const {
@@ -113,21 +135,26 @@ void Server::Parts::accept() {
       timer->async_wait([self, timer](error_code) { self->accept(); });
       return;
     }
-    if (self->connections >= self->options.most_clients) {
-      self->once(fmt::format("more than {} connections: the others are turned away", self->options.most_clients));
-    } else {
-      error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      serve(self, std::move(socket));
-    }
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    serve(self, std::move(socket));
     self->accept();
   });
+}
+
+std::string Server::Parts::host() const {
+  const std::string name = reachable_name(options.address);
+  return name.find(':') == std::string::npos ? fmt::format("{}:{}", name, port) : fmt::format("[{}]:{}", name, port);
+}
+
+std::string Server::Parts::viewers_address() const {
+  return fmt::format("http://{}/{}", host(), tokens.viewers);
 }
 
 void Server::Parts::add(const std::shared_ptr<Client>& client) {
   clients.emplace(client->number(), client);
   client_count = clients.size();
-  if (hooks.attached) hooks.attached(clients.size());
+  tell_owners();
   tell_rate();
   for (const PastEvent& event : events) client->give_event(event.json);
   if (model) client->give(Topic::model, model);
@@ -139,14 +166,50 @@ void Server::Parts::remove(std::uint64_t client) {
   if (clients.erase(client) == 0) return;
   client_count = clients.size();
   if (stopping) return;
-  if (hooks.attached) hooks.attached(clients.size());
+  tell_owners();
   tell_rate();
+}
+
+/// How many there are: to who runs the session, and to the presenters.
+void Server::Parts::tell_owners() {
+  const auto is_viewer = [](const auto& client) { return client.second->rights().role == Role::viewer; };
+  const auto viewers = static_cast<std::size_t>(std::ranges::count_if(clients, is_viewer));
+  if (hooks.attached) hooks.attached(clients.size() - viewers);
+  const auto room = std::make_shared<const std::string>(room_json(viewers));
+  const auto now = clients;
+  for (const auto& [number, client] : now)
+    if (client->rights().role == Role::presenter) client->give_room(room);
 }
 
 void Server::Parts::tell_rate() {
   double most = 0;
-  for (const auto& [number, client] : clients) most = std::max(most, client->rate());
+  for (const auto& [number, client] : clients) {
+    const double usual = 60;  // what viewers may cost the presenter's computer
+    most = std::max(most, client->rights().role == Role::viewer ? std::min(client->rate(), usual) : client->rate());
+  }
   if (hooks.rate && most > 0) hooks.rate(most);
+}
+
+/// Twenty times a second: whether the session is at something that takes long.
+void Server::Parts::watch_work() {
+  work_timer.expires_after(std::chrono::milliseconds(50));
+  work_timer.async_wait([self = shared_from_this()](error_code error) {
+    if (error || self->stopping) return;
+    const std::optional<Work> work = self->hooks.watch();
+    const double seconds = work ? work->seconds : 0;
+    constexpr double least = 0.25, every = 0.5;
+    const bool begins = seconds >= least && (seconds >= self->busy_told + every || self->busy_told == 0);
+    const bool ends = self->busy_told > 0 && seconds < self->busy_told;
+    if (begins || ends) {
+      const bool long_one = seconds >= least;
+      self->busy_told = long_one ? seconds : 0;
+      const std::string_view with = !long_one ? "" : work->kind == Work::Kind::motion ? "motion" : "commands";
+      const auto json = std::make_shared<const std::string>(busy_json(with, self->busy_told));
+      const auto now = self->clients;
+      for (const auto& [number, client] : now) client->give_busy(json);
+    }
+    self->watch_work();
+  });
 }
 
 void Server::Parts::see(const std::shared_ptr<const Slice>& slice) {
@@ -170,8 +233,14 @@ void Server::Parts::hear(Topic topic, std::string json) {
   const auto text = std::make_shared<const std::string>(std::move(json));
   if (topic == Topic::model) {
     model = text;
+    state = nullptr;  // of the one before, as what follows
     events.clear();
-    for (const auto& [number, client] : clients) client->forget_events();
+    std::vector<ReadMark*> marks;
+    for (const auto& [number, client] : clients) {
+      client->forget_events();
+      marks.push_back(&client->mark());
+    }
+    rows.forget(marks);
   }
   if (topic == Topic::state) state = text;
   const auto now = clients;
@@ -180,7 +249,7 @@ void Server::Parts::hear(Topic topic, std::string json) {
 
 void Server::Parts::check(std::uint64_t client, Asked asked) {
   asio::post(checker, [self = shared_from_this(), client, asked = std::move(asked)] {
-    const model::Loaded loaded = model::load(model::Source(self->options.model_path, asked.text));
+    const model::Loaded loaded = model::load_confined(model::Source(self->options.model_path, asked.text));
     auto json = std::make_shared<const std::string>(checked_json(asked.number, loaded.diagnostics, loaded.source));
     asio::post(self->io, [self, client, json] {
       const auto found = self->clients.find(client);

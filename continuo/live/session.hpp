@@ -41,8 +41,11 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Reads the file of the place, or what is wrong with it: then there is nothing to show.
+  /// Reads the file of the place, or what is wrong with it: then there is nothing to show. Where the place names none,
+  /// the first model of its gallery is opened.
   model::Loaded open_file();
+  /// Shows a text that is wrong, with its mistakes and with nothing that moves, until `run_text` brings a better one.
+  void open_mistaken(const model::Loaded& loaded);
   /// Whether a model is shown.
   [[nodiscard]] bool is_open() const { return playback_.shown() != nullptr; }
   /// Why there is nothing to show.
@@ -50,6 +53,11 @@ class Session {
 
   /// What is due by the clock; publishes what there is to see.
   void turn();
+  /// From any thread: gives up the step that is being computed, so that `turn` and `step` return soon and a command can
+  /// be obeyed. The motion stands where that step began, and does not advance before `forget_interrupt`.
+  void interrupt() { playback_.interrupt().request(); }
+  /// What was given up may be begun again.
+  void forget_interrupt() { playback_.interrupt().forget(); }
   /// Pictures a second, 1 to 120.
   void set_rate(double pictures) { playback_.set_rate(pictures); }
 
@@ -90,7 +98,8 @@ class Session {
   void pick(std::size_t body);
   /// Opens a model of the gallery by its name.
   void open_gallery(const std::string& name);
-  /// Reads a text as the model, and begins it. Where it is wrong, the present model stays.
+  /// Reads a text as the model, as if it stood in the file that is open, and begins it. Where it is wrong, the present
+  /// model stays.
   void run_text(const std::string& text);
   /// Writes the text to the file of the place. Any other file is refused.
   void save_text(const std::string& text);
@@ -117,7 +126,7 @@ class Session {
   [[nodiscard]] std::string state_json() const;
 
  private:
-  bool begin(model::Model model, ModelText text);
+  bool begin(model::Model model, ModelText text, std::vector<model::Diagnostic> mistakes = {});
   bool load_anew(const std::string& text);
   void load_anew_after(Change change);
   bool begin_run(std::shared_ptr<const LiveModel> shown);
@@ -128,7 +137,8 @@ class Session {
   Now now_;
   Audience& audience_;
   Place place_;
-  ModelText text_;  // that is open
+  ModelText text_;                           // that is open
+  std::vector<model::Diagnostic> mistakes_;  // of that text
 
   // Each uses those before it.
   Notices notices_;

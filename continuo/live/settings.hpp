@@ -24,18 +24,20 @@ struct Settings {
   std::optional<MethodChoice> ghost{};
 };
 
-/// A model that can be opened: its name, the first line of its heading, and its file.
+/// A model that can be opened: its name, the first line of its heading, its file, and the subject it belongs to.
 struct GalleryModel {
-  std::string name, title, path;
+  std::string name, title, path, subject{};
 };
 
 /// Where models come from.
 struct Place {
-  std::string path;                     // of the model that was named: the only file that is ever written
+  std::string path;                     // of the model that was named: the only file that is ever written; empty: none
   std::vector<GalleryModel> gallery{};  // what can be opened besides
+  bool writable = true;                 // the file of the model
 };
 
-/// The models of a folder by name, each with the first line of its heading.
+/// The models of a folder, each with the first line of its heading. A file `gallery.txt` in the folder gives their
+/// order and their subjects: a line is a subject, the indented lines below it are models. Others follow by name.
 [[nodiscard]] std::vector<GalleryModel> gallery_in(const std::string& folder);
 
 }  // namespace continuo::live

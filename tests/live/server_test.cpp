@@ -1,5 +1,6 @@
 // The server under malicious clients. The sockets are written by hand, since a library would not send such requests.
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -38,6 +39,13 @@ class Wire {
   ~Wire() { ::close(socket_); }
 
   bool connected() const { return connected_; }
+  /// By the other side, whatever it has sent before.
+  bool is_closed() {
+    char part[4096];
+    ssize_t got = 1;
+    while (got > 0) got = ::recv(socket_, part, sizeof part, MSG_DONTWAIT);
+    return got == 0 || errno == ECONNRESET;
+  }
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -69,9 +77,11 @@ std::string message(unsigned char opcode, std::string_view payload, bool masked 
   const char mask_bit = masked ? static_cast<char>(0x80) : '\0';
   if (payload.size() < 126) {
     bytes += static_cast<char>(static_cast<char>(payload.size()) | mask_bit);
-  } else {
-    bytes += static_cast<char>(127 | mask_bit);
-    for (int shift = 56; shift >= 0; shift -= 8) bytes += static_cast<char>(payload.size() >> shift & 0xff);
+  } else {  // in as few bytes as can be, as RFC 6455 wants it
+    const bool is_short = payload.size() < 65536;
+    bytes += static_cast<char>((is_short ? 126 : 127) | mask_bit);
+    for (int shift = is_short ? 8 : 56; shift >= 0; shift -= 8)
+      bytes += static_cast<char>(payload.size() >> shift & 0xff);
   }
   if (masked) bytes += std::string(4, '\0');
   return bytes + std::string(payload);
@@ -80,7 +90,13 @@ std::string message(unsigned char opcode, std::string_view payload, bool masked 
 class LiveServer : public ::testing::Test {
  protected:
   void SetUp() override {
-    ServerOptions options{.page = stored("<p>page"), .most_clients = 40, .patience = 1, .idle = 2};
+    ServerOptions options{.page = stored("<p>page"),
+                          .most_viewers = 10,
+                          .most_presenters = 40,
+                          .most_strangers = 8,
+                          .patience = 1,
+                          .idle = 2,
+                          .most_messages = 1'000'000};
     server = std::make_unique<Server>(options, [this](const std::string& text) {
       const std::lock_guard lock(mutex);
       said.push_back(text);
@@ -110,6 +126,10 @@ class LiveServer : public ::testing::Test {
            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n" + more + "\r\n";
   }
   std::string live() const { return upgrade("/live?token=" + token); }
+  std::string viewers_token() const {
+    const std::string url = server->viewers_url();
+    return url.substr(url.rfind('/') + 1);
+  }
   /// A client that is let in gets its picture: the server lives.
   void expect_alive() {
     Wire wire(server->port());
@@ -215,9 +235,12 @@ TEST_F(LiveServer, SurvivesTenThousandMalformedMessages) {
         case 3:
           fine = wire.send(message(1, commands[any(commands.size())]));
           break;
-        case 4:
-          fine = wire.send(message(static_cast<unsigned char>(any(16)), std::string(any(200), '\x5a'), any(3) != 0));
+        case 4: {
+          std::string frame = message(static_cast<unsigned char>(any(16)), std::string(any(200), '\x5a'), any(3) != 0);
+          if (any(3) == 0) frame[0] = static_cast<char>(frame[0] & 0x7f);  // a part of a message
+          fine = wire.send(frame);
           break;
+        }
         default: {
           std::string noise(1 + any(40), '\0');
           for (char& c : noise) c = static_cast<char>(any(256));
@@ -260,16 +283,69 @@ TEST_F(LiveServer, WhoReadsNothingHoldsNobodyUpAndIsLeft) {
   expect_alive();
 }
 
-TEST_F(LiveServer, ConnectionsAreCounted) {
-  std::vector<std::unique_ptr<Wire>> many;
-  for (int i = 0; i < 60; ++i) many.push_back(std::make_unique<Wire>(server->port()));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  {
-    const std::lock_guard lock(mutex);
-    EXPECT_EQ(std::ranges::count_if(said, [](const std::string& text) { return text.starts_with("more than 40"); }), 1);
+// Strangers are few, and the oldest goes first: whoever knows the token comes in at once, before any time limit.
+TEST_F(LiveServer, IdleStrangersLockNobodyOut) {
+  std::vector<std::unique_ptr<Wire>> idle;
+  for (int i = 0; i < 64; ++i) {
+    idle.push_back(std::make_unique<Wire>(server->port()));
+    if (i % 3 == 0) idle.back()->send("GET / HTTP/1.1\r\nHost: ");
+    if (i % 3 == 1) idle.back()->send(upgrade("/live?token=wrong"));
   }
-  many.clear();
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  expect_alive();
+  std::size_t closed = 0;
+  for (const auto& wire : idle) closed += wire->is_closed() ? 1 : 0;
+  EXPECT_GE(closed, 64U - 8U - 64U / 3) << "of those who have said nothing, eight may stay";
+}
+
+TEST_F(LiveServer, AViewerMayDoNothingButSee) {
+  for (const std::string_view name : all_commands()) {
+    const bool allowed_to_all = name == "ping" || name == "rate";
+    EXPECT_EQ(may({.role = Role::viewer, .may_save = true}, name), allowed_to_all) << name;
+    EXPECT_EQ(may({.role = Role::presenter}, name), name != "save") << name;
+    EXPECT_EQ(may({.role = Role::owner, .may_save = true}, name), name != "save") << name;
+    EXPECT_TRUE(may({.role = Role::presenter, .may_save = true}, name)) << name;
+  }
+  EXPECT_FALSE(may({.role = Role::presenter, .may_save = true}, "format_disk"));
+  Wire wire(server->port());
+  ASSERT_TRUE(wire.send(upgrade("/live?token=" + viewers_token())));
+  std::string heard;
+  const auto hear = [&](const std::string& word) {
+    for (std::string more; heard.find(word) == std::string::npos; heard += more) {
+      more = wire.receive(4096);
+      if (more.empty()) return;
+    }
+  };
+  hear(R"("say":"model")");  // a client speaks when it has been let in
+  for (const std::string_view name : all_commands())
+    wire.send(message(1, R"({"do":")" + std::string(name) +
+                             R"(","id":1,"fps":30,"t":0,"value":0,"parameter":"l","name":"rk4","text":"x' = 1",)" +
+                             R"("item":0,"body":0,"to":[0,0],"model":"spring"})"));
+  wire.send(message(1, R"({"do":"ping","id":77})"));
+  hear(R"("id":77)");
+  for (const std::string_view name : all_commands()) {
+    const bool refused = heard.find("`" + std::string(name) + "` is the presenter's") != std::string::npos;
+    EXPECT_EQ(refused, name != "ping" && name != "rate") << name;
+  }
+  EXPECT_NE(heard.find(R"("role":"viewer")"), std::string::npos);
+}
+
+TEST_F(LiveServer, TheShortAddressLeadsToTheLongOne) {
+  Wire wire(server->port());
+  wire.send("GET /" + viewers_token() + " HTTP/1.1\r\nHost: " + host() + "\r\n\r\n");
+  const std::string answer = wire.receive();
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 303"));
+  EXPECT_NE(answer.find("/?token=" + viewers_token()), std::string::npos);
+  EXPECT_EQ(answer.find(token), std::string::npos) << "the presenter's token is nobody else's";
+}
+
+TEST_F(LiveServer, ViewersHaveTheirNumberAndPresentersTheirOwn) {
+  std::vector<std::unique_ptr<Wire>> many;
+  for (int i = 0; i < 14; ++i) {
+    many.push_back(std::make_unique<Wire>(server->port()));
+    many.back()->send(upgrade("/live?token=" + viewers_token()));
+    const std::string status = many.back()->receive(12);
+    EXPECT_EQ(status, i < 10 ? "HTTP/1.1 101" : "HTTP/1.1 503") << i;
+  }
   expect_alive();
 }
 

@@ -177,9 +177,11 @@ TEST(LiveText, ModelsForTheBoundarySolverAreRefused) {
 
 TEST(LiveText, IsSavedToItsFileOnly) {
   Stage stage("x' = 1\nx(0) = 0\nrun 0..3\n");
-  const std::string path = stage.audience.said("model").back()["path"];
+  const std::string name = stage.audience.said("model").back()["path"];
+  EXPECT_EQ(name.find('/'), std::string::npos) << "where it lies is nobody's business";
+  EXPECT_TRUE(stage.path.ends_with("/" + name));
   stage.session->save_text("x' = 2\nx(0) = 0\nrun 0..3\n");
-  std::ifstream file(path);
+  std::ifstream file(stage.path);
   std::string line;
   std::getline(file, line);
   EXPECT_EQ(line, "x' = 2");

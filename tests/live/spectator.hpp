@@ -34,13 +34,13 @@ class Spectator final : public Audience {
 /// A model of the test's own, or of the gallery, with its clock.
 class Stage {
  public:
-  explicit Stage(const std::string& text_or_name) {
+  explicit Stage(const std::string& text_or_name) : path(file_of(text_or_name)) {
     session = std::make_unique<Session>(
         [this] {
           wall += cost;
           return wall;
         },
-        audience, Place{.path = file_of(text_or_name)});
+        audience, Place{.path = path});
     const model::Loaded loaded = session->open_file();
     EXPECT_TRUE(loaded.model) << loaded.text();
   }
@@ -78,6 +78,7 @@ class Stage {
     return std::nan("");
   }
 
+  std::string path;  // of the model
   Spectator audience;
   double wall = 100, cost = 0;  // cost: seconds that each reading of the clock takes
   std::unique_ptr<Session> session;

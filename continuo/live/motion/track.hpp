@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <continuo/live/motion/step_interrupt.hpp>
 #include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/status/result.hpp>
@@ -48,8 +49,11 @@ class Track {
   virtual ~Track() = default;
 
   virtual double t() const = 0;
-  /// One step, or less where an event changes the state; `wanted` is how far somebody looks ahead. False: it is over.
+  /// One step, or less where an event changes the state; `wanted` is how far somebody looks ahead. False: it is over,
+  /// or the step was interrupted.
   virtual bool advance(double wanted) = 0;
+  /// Whether the last step was given up: then the motion stands where it began, and the next advance begins it anew.
+  virtual bool was_interrupted() const { return false; }
   /// The events of the last step, in order.
   const std::vector<Passed>& passed() const { return passed_; }
   /// x at a time of the last step.
@@ -65,7 +69,7 @@ class Track {
   virtual Statistics statistics() const = 0;
   const model::Plan& plan() const { return plan_; }
 
-  /// Null of bodies; null of equations.
+  /// Null of bodies, or while a step that was given up has not ended; null of equations.
   virtual const model::Stepping* equations() const { return nullptr; }
   virtual const worlds::WorldRun* world() const { return nullptr; }
   /// From here on the body stays where the hand is, or as near as others leave it room.
@@ -81,8 +85,9 @@ class Track {
   std::vector<Passed> passed_;
 };
 
-/// `plan` as `plan_run` gives it, of a world as `model::plan` does. Fails where the motion cannot begin.
+/// `plan` as `plan_run` gives it, of a world as `model::plan` does. Fails where the motion cannot begin. By the
+/// interrupt a step of equations is given up, and must outlive the track; bodies end a step, which takes a moment.
 Result<std::unique_ptr<Track>> make_track(const std::shared_ptr<const model::ModelProgram>& program,
-                                          const model::Plan& plan);
+                                          const model::Plan& plan, StepInterrupt* interrupt = nullptr);
 
 }  // namespace continuo::live

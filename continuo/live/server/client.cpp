@@ -15,8 +15,23 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-Client::Client(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket, std::uint64_t number)
-    : parts_(std::move(parts)), stream_(std::move(socket)), number_(number), later_(parts_->io), again_(parts_->io) {}
+namespace {
+
+std::string_view word_for(Role role) {
+  return role == Role::presenter ? "presenter" : role == Role::owner ? "owner" : "viewer";
+}
+
+}  // namespace
+
+Client::Client(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket, Rights rights,
+               std::unique_ptr<Places::Place> place)
+    : parts_(std::move(parts)),
+      stream_(std::move(socket)),
+      rights_(rights),
+      place_(std::move(place)),
+      number_(++parts_->last_client),
+      later_(parts_->io),
+      again_(parts_->io) {}
 
 void Client::begin(const Upgrade& upgrade) {
   websocket::stream_base::timeout patience{};
@@ -26,12 +41,18 @@ void Client::begin(const Upgrade& upgrade) {
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(parts_->options.idle));
   patience.keep_alive_pings = true;  // who has gone without a word does not answer
   stream_.set_option(patience);
-  stream_.read_message_max(most_text);
+  const bool sees_only = rights_.role == Role::viewer;
+  stream_.read_message_max(sees_only ? most_text_of_viewers : most_text);
   stream_.auto_fragment(false);
   beast::get_lowest_layer(stream_).expires_never();
   stream_.async_accept(upgrade, [self = shared_from_this()](error_code error) {
     if (error) return self->end();
     self->open_ = true;
+    self->role_ = std::make_shared<const std::string>(
+        role_json({.role = word_for(self->rights_.role),
+                   .may = allowed(self->rights_),
+                   .own_sessions = self->parts_->options.own_sessions,
+                   .viewers_address = self->rights_.role == Role::presenter ? self->parts_->viewers_address() : ""}));
     self->parts_->add(self);
     self->read();
   });
@@ -45,6 +66,7 @@ void Client::end() {
   again_.cancel();
   beast::error_code ignored;
   beast::get_lowest_layer(stream_).socket().close(ignored);
+  place_.reset();
   parts_->remove(number_);
 }
 
@@ -62,7 +84,7 @@ void Client::close() {
 void Client::read() {
   stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
     if (error == websocket::error::message_too_big)
-      self->parts_->once("a message above 1 MiB: its sender is shown out");
+      self->parts_->once("a message that is too large: its sender is shown out");
     if (error) return self->end();
     self->was_read();
   });
@@ -79,13 +101,34 @@ void Client::was_read() {
   } else {
     obey(std::move(message));
   }
-  if (!waiting_ && !closing_) read();
+  if (waiting_ || closing_) return;
+  if (!is_too_fast()) return read();
+  again_.expires_at(tenth_ + std::chrono::milliseconds(100));
+  again_.async_wait([self = shared_from_this()](error_code error) {
+    if (!error && !self->gone_) self->read();
+  });
+}
+
+/// A flood waits in its sender, and costs nobody else their turn.
+bool Client::is_too_fast() {
+  const Clock::time_point now = Clock::now();
+  if (now - tenth_ >= std::chrono::milliseconds(100)) {
+    tenth_ = now;
+    in_tenth_ = 0;
+  }
+  return ++in_tenth_ >= parts_->options.most_messages / 10;
 }
 
 void Client::obey(std::string text) {
   Result<Command> read = read_command(std::move(text));
   if (!read) return complain(read.status().message);
   Command& command = *read;
+  if (!may(rights_, command.what)) {
+    const bool saves = rights_.role == Role::presenter;  // all else is the presenter's
+    return complain(
+        fmt::format("`{}` is {}", command.what,
+                    saves ? "off here: `continuo view --allow-save` lets the page write the file" : "the presenter's"));
+  }
   const bool for_me = command.what == "check" || command.what == "ping" || command.what == "rate";
   if (!for_me) return hand_on(std::move(command));
   Result<Asked> what = asked(command);
@@ -113,7 +156,7 @@ void Client::hand_on(Command command) {
   again_.async_wait([self = shared_from_this(), command = std::move(command)](error_code error) mutable {
     if (error || self->gone_) return;
     self->hand_on(std::move(command));
-    if (!self->waiting_) self->read();
+    if (!self->waiting_ && !self->closing_) self->read();
   });
 }
 
@@ -137,7 +180,8 @@ void Client::checked(const Text& json) {
 void Client::give(Topic topic, const Text& json) {
   if (topic == Topic::model) {
     model_ = json;
-    picture_ = false;  // of the model before
+    state_ = nullptr;  // of the model before, as
+    picture_ = false;
   } else if (topic == Topic::state) {
     state_ = json;
   } else {
@@ -152,6 +196,16 @@ void Client::give_event(const Text& json) {
   if (events_.size() > most_waiting) events_.pop_front();
 }
 
+void Client::give_room(const Text& json) {
+  room_ = json;
+  pump();
+}
+
+void Client::give_busy(const Text& json) {
+  busy_ = json;
+  pump();
+}
+
 void Client::picture() {
   picture_ = true;
   pump();
@@ -159,7 +213,8 @@ void Client::picture() {
 
 void Client::pump() {
   if (writing_ || !open_) return;
-  if (model_) return write(std::exchange(model_, nullptr), false);
+  for (Text* text : {&role_, &model_, &room_, &busy_})
+    if (*text) return write(std::exchange(*text, nullptr), false);
   for (std::deque<Text>* list : {&messages_, &events_}) {
     if (list->empty()) continue;
     Text text = std::move(list->front());

@@ -25,18 +25,26 @@ class Client : public std::enable_shared_from_this<Client> {
   using Stream = boost::beast::websocket::stream<boost::beast::tcp_stream>;
   using Upgrade = boost::beast::http::request<boost::beast::http::empty_body>;
 
-  Client(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket, std::uint64_t number);
+  /// `place` is given back when it ends.
+  Client(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket, Rights rights,
+         std::unique_ptr<Places::Place> place);
 
   void begin(const Upgrade& upgrade);
   void close();
+  /// Without a word.
+  void end();
 
   std::uint64_t number() const { return number_; }
+  const Rights& rights() const { return rights_; }
   double rate() const { return rate_; }
   ReadMark& mark() { return mark_; }
 
   /// A model or a state stands for those before it.
   void give(Topic topic, const Text& json);
   void give_event(const Text& json);
+  /// Each stands for those before it.
+  void give_room(const Text& json);
+  void give_busy(const Text& json);
   void forget_events() { events_.clear(); }
   /// There is a newer picture.
   void picture();
@@ -53,23 +61,27 @@ class Client : public std::enable_shared_from_this<Client> {
   void hand_on(Command command);
   void pump();
   void write(Text bytes, bool binary);
-  void end();
+  bool is_too_fast();
 
   static constexpr std::size_t most_text = std::size_t{1} << 20, most_waiting = 1000, most_wrong = 100;
+  static constexpr std::size_t most_text_of_viewers = 4096;  // who may say little
 
   std::shared_ptr<Server::Parts> parts_;
   Stream stream_;
+  Rights rights_;
+  std::unique_ptr<Places::Place> place_;
   std::uint64_t number_;
   boost::beast::flat_buffer buffer_;
   boost::asio::steady_timer later_, again_;
   double rate_ = 60;
   ReadMark mark_;
-  Text model_, state_;
+  Text role_, model_, state_, room_, busy_;
   std::deque<Text> events_, messages_;
   bool open_ = false, writing_ = false, picture_ = false, waiting_ = false, checking_ = false, gone_ = false;
   bool closing_ = false;
   std::optional<Asked> next_check_;
-  Clock::time_point due_{};
+  Clock::time_point due_{}, tenth_{};
+  std::size_t in_tenth_ = 0;
   std::size_t wrong_ = 0;
 };
 

@@ -1,6 +1,5 @@
 // continuo/live/server/origin_guard.cpp
 // Compares token, host and origin of a request.
-#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -11,27 +10,54 @@
 
 namespace continuo::live {
 
-std::string make_token() {
-  std::array<unsigned char, 16> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("the operating system gives no random numbers");
-  std::string token;
-  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
-  return token;
+namespace {
+
+std::string random_text(std::string_view letters, std::size_t length) {
+  std::string text;
+  while (text.size() < length) {
+    unsigned char byte = 0;
+    if (::getrandom(&byte, 1, 0) != 1) throw std::runtime_error("the operating system gives no random numbers");
+    const std::size_t whole = 256 - 256 % letters.size();  // beyond it some letters would be likelier than others
+    if (byte < whole) text += letters[byte % letters.size()];
+  }
+  return text;
 }
 
-OriginGuard::OriginGuard(std::string token, std::string address, unsigned port)
-    : token_(std::move(token)), address_(std::move(address)), port_(port) {}
-
 /// In a time that does not depend on how much of it is right.
-bool OriginGuard::is_token(std::string_view given) const {
-  unsigned difference = given.size() == token_.size() ? 0 : 1;
-  for (std::size_t i = 0; i < token_.size(); ++i) {
+bool is_token(std::string_view given, std::string_view token) {
+  unsigned difference = given.size() == token.size() ? 0 : 1;
+  for (std::size_t i = 0; i < token.size(); ++i) {
     const char other = i < given.size() ? given[i] : '\0';
-    difference |= static_cast<unsigned>(static_cast<unsigned char>(token_[i]) ^ static_cast<unsigned char>(other));
+    difference |= static_cast<unsigned>(static_cast<unsigned char>(token[i]) ^ static_cast<unsigned char>(other));
   }
   return difference == 0;
 }
+
+struct Query {
+  std::string_view token{};
+  bool own = false;
+};
+Query read_query(std::string_view query) {
+  Query read;
+  while (!query.empty()) {
+    const std::size_t end = query.find('&');
+    const std::string_view part = query.substr(0, end);
+    if (part.starts_with("token=")) read.token = part.substr(6);
+    if (part == "own" || part == "own=") read.own = true;
+    query = end == std::string_view::npos ? "" : query.substr(end + 1);
+  }
+  return read;
+}
+
+}  // namespace
+
+Tokens make_tokens() {
+  // Without letters and digits that look alike.
+  return {random_text("0123456789abcdef", 32), random_text("23456789abcdefghjkmnpqrstuvwxyz", 10)};
+}
+
+OriginGuard::OriginGuard(Tokens tokens, std::string address, unsigned port)
+    : tokens_(std::move(tokens)), address_(std::move(address)), port_(port) {}
 
 bool OriginGuard::knows_host(std::string_view host) const {
   const bool only_here = address_.starts_with("127.") || address_ == "::1";
@@ -43,25 +69,24 @@ bool OriginGuard::knows_host(std::string_view host) const {
   return host == address_ + port;
 }
 
-Verdict OriginGuard::judge(const Request& request) const {
-  if (request.method != "GET") return Verdict::wrong_method;
+Admission OriginGuard::judge(const Request& request) const {
+  if (request.method != "GET") return {Verdict::wrong_method};
   const std::size_t question = request.target.find('?');
   const std::string_view path = request.target.substr(0, question);
-  std::string_view query = question == std::string_view::npos ? "" : request.target.substr(question + 1);
+  const Query query = read_query(question == std::string_view::npos ? "" : request.target.substr(question + 1));
+  if (path.size() == tokens_.viewers.size() + 1 && is_token(path.substr(1), tokens_.viewers) &&
+      knows_host(request.host))
+    return {Verdict::short_address};
   const bool live = path == "/live";
-  if (!live && path != "/") return Verdict::not_found;
-  if (!knows_host(request.host)) return Verdict::wrong_host;
-  if (!request.origin.empty() && request.origin != fmt::format("http://{}", request.host)) return Verdict::wrong_origin;
-  std::string_view token;
-  while (!query.empty()) {
-    const std::size_t end = query.find('&');
-    const std::string_view part = query.substr(0, end);
-    if (part.starts_with("token=")) token = part.substr(6);
-    query = end == std::string_view::npos ? "" : query.substr(end + 1);
-  }
-  if (!is_token(token)) return Verdict::wrong_token;
-  if (live != request.upgrade) return Verdict::not_found;
-  return live ? Verdict::live : Verdict::page;
+  if (!live && path != "/") return {Verdict::not_found};
+  if (!knows_host(request.host)) return {Verdict::wrong_host};
+  if (!request.origin.empty() && request.origin != fmt::format("http://{}", request.host))
+    return {Verdict::wrong_origin};
+  const bool presents = is_token(query.token, tokens_.presenter);
+  if (!presents && !is_token(query.token, tokens_.viewers)) return {Verdict::wrong_token};
+  if (live != request.upgrade) return {Verdict::not_found};
+  const Role role = presents ? Role::presenter : query.own ? Role::owner : Role::viewer;
+  return {live ? Verdict::live : Verdict::page, role};
 }
 
 void SayOnce::operator()(const std::string& kind) {

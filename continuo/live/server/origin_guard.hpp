@@ -1,12 +1,15 @@
 // continuo/live/server/origin_guard.hpp
-// Who is let in: the page and the socket, to those who know the token, at the address the server goes by, from no page
-// but its own. A page of somebody else's, open in the same browser, can reach 127.0.0.1 as well.
+// Who is let in, and as whom: the page and the socket, to those who know the presenter's token or the viewers', at the
+// address the server goes by, from no page but its own. A page of somebody else's, open in the same browser, can reach
+// 127.0.0.1 as well.
 #pragma once
 #include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include <continuo/live/session/commands.hpp>
 
 namespace continuo::live {
 
@@ -16,24 +19,34 @@ struct Request {
   bool upgrade = false;
 };
 
-enum class Verdict { page, live, wrong_token, wrong_origin, wrong_host, not_found, wrong_method };
+enum class Verdict { page, live, short_address, wrong_token, wrong_origin, wrong_host, not_found, wrong_method };
 
-/// 128 bits from the operating system, in hexadecimal digits.
-std::string make_token();
+/// What is decided of a request.
+struct Admission {
+  Verdict verdict;
+  Role role = Role::viewer;  // owner: a viewer who asks for a session of their own
+};
+
+/// What the two kinds of guests show.
+struct Tokens {
+  std::string presenter;  // 128 bits from the operating system, in hexadecimal digits
+  std::string viewers;    // 49 bits, in ten letters and digits that a class can copy from a blackboard
+};
+Tokens make_tokens();
 
 class OriginGuard {
  public:
   /// `address`, `port`: where the server listens. At an address that only this computer reaches, the names it goes by
   /// are known, and a request by another name was led here by somebody's name server.
-  OriginGuard(std::string token, std::string address, unsigned port);
+  OriginGuard(Tokens tokens, std::string address, unsigned port);
 
-  Verdict judge(const Request& request) const;
+  Admission judge(const Request& request) const;
 
  private:
   bool knows_host(std::string_view host) const;
-  bool is_token(std::string_view given) const;
 
-  std::string token_, address_;
+  Tokens tokens_;
+  std::string address_;
   unsigned port_;
 };
 

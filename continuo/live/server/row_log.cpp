@@ -14,6 +14,13 @@ void RowLog::clear() {
   begin_ = 0;
 }
 
+void RowLog::forget(const std::vector<ReadMark*>& marks) {
+  clear();
+  slice_.reset();
+  made_.clear();
+  for (ReadMark* mark : marks) *mark = {};
+}
+
 void RowLog::forget_from(double t, const std::vector<ReadMark*>& marks) {
   while (!rows_.empty() && rows_.back().t >= t) {
     bytes_ -= rows_.back().bytes();

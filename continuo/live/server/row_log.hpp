@@ -26,6 +26,8 @@ class RowLog {
   /// Takes what the slice adds; `marks` of clients that had read what is now void are put back.
   void add(std::shared_ptr<const Slice> slice, const std::vector<ReadMark*>& marks);
   bool empty() const { return slice_ == nullptr; }
+  /// What there is belongs to another model: nothing is shown of it any more.
+  void forget(const std::vector<ReadMark*>& marks);
 
   /// The newest picture with the rows the client has not had. Clients in step share their bytes.
   std::shared_ptr<const std::string> frame(ReadMark& mark);

@@ -9,12 +9,15 @@
 #include <string>
 #include <thread>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
 #include <continuo/live/server.hpp>
 #include <continuo/live/server/origin_guard.hpp>
+#include <continuo/live/server/places.hpp>
 #include <continuo/live/server/row_log.hpp>
 
 namespace continuo::live {
@@ -25,16 +28,20 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
   Parts(ServerOptions options_, Say say_) : options(std::move(options_)), once(say_) {}
 
   void accept();
+  std::string host() const;
+  std::string viewers_address() const;
   void add(const std::shared_ptr<Client>& client);
   void remove(std::uint64_t client);
   void tell_rate();
+  void tell_owners();
+  void watch_work();
   void see(const std::shared_ptr<const Slice>& slice);
   void hear(Topic topic, std::string json);
   void check(std::uint64_t client, Asked asked);
 
   ServerOptions options;
   SayOnce once;
-  std::string token = make_token();
+  Tokens tokens = make_tokens();
   std::optional<OriginGuard> origin_guard;
   ServerHooks hooks;
 
@@ -42,11 +49,16 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
   std::unique_ptr<boost::asio::io_context> context = std::make_unique<boost::asio::io_context>(1);
   boost::asio::io_context& io = *context;
   std::optional<boost::asio::ip::tcp::acceptor> acceptor{io};
+  // What keeps the thread where nothing is accepted.
+  std::optional<boost::asio::executor_work_guard<boost::asio::io_context::executor_type>> keeps_running;
   boost::asio::thread_pool checker{1};  // a text is checked while its author types: not in the way of the pictures
   std::thread thread;
   unsigned short port = 0;
-  std::size_t connections = 0;
+  Places places{
+      {.strangers = options.most_strangers, .viewers = options.most_viewers, .presenters = options.most_presenters}};
   bool stopping = false;
+  boost::asio::steady_timer work_timer{io};
+  double busy_told = 0;  // seconds of the work that clients know of
 
   std::uint64_t last_client = 0;
   std::map<std::uint64_t, std::shared_ptr<Client>> clients;
@@ -64,5 +76,7 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
 
 /// Serves one connection: a request, then the page, a refusal, or a client for as long as it stays.
 void serve(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket);
+/// The same from the request on, which was read elsewhere, for the owner of the session.
+void serve_owner(std::shared_ptr<Server::Parts> parts, boost::asio::ip::tcp::socket socket, const std::string& request);
 
 }  // namespace continuo::live

@@ -1,8 +1,7 @@
 // continuo/live/session/commands.cpp
 // Reads commands from JSON, and calls the session.
+#include <algorithm>
 #include <array>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -70,45 +69,95 @@ void drag(Session& session, const json& command) {
   session.drag(index(command, "item"), point);
 }
 
-using Doing = std::function<void(Session&, const json&)>;
+using Doing = void (*)(Session&, const json&);
 
-const std::map<std::string, Doing, std::less<>>& doings() {
-  static const std::map<std::string, Doing, std::less<>> all = {
-      {"play", [](Session& s, const json&) { s.play(); }},
-      {"pause", [](Session& s, const json&) { s.pause(); }},
-      {"step", [](Session& s, const json&) { s.step(); }},
-      {"back", [](Session& s, const json&) { s.back(); }},
-      {"reset", [](Session& s, const json&) { s.reset(); }},
-      {"until_event", [](Session& s, const json&) { s.until_event(); }},
-      {"restore", [](Session& s, const json&) { s.restore_parameters(); }},
-      {"undo", [](Session& s, const json&) { s.undo(); }},
-      {"release", [](Session& s, const json& c) { s.release(perhaps_true(c, "still")); }},
-      {"seek", [](Session& s, const json& c) { s.seek(number(c, "t")); }},
-      {"speed", [](Session& s, const json& c) { s.set_speed(number(c, "value")); }},
-      {"set", [](Session& s, const json& c) { s.set_parameter(word(c, "parameter"), number(c, "value")); }},
-      {"input", [](Session& s, const json& c) { s.move_input(word(c, "name"), number(c, "value")); }},
-      {"method", [](Session& s, const json& c) { s.take_method(method_of(c)); }},
-      {"ghost",
-       [](Session& s, const json& c) {
-         const auto name = c.find("name");
-         if (name == c.end() || name->is_null()) {
-           s.take_ghost(std::nullopt);
-         } else {
-           s.take_ghost(method_of(c));
-         }
-       }},
-      {"drag", drag},
-      {"pick", [](Session& s, const json& c) { s.pick(index(c, "body")); }},
-      {"open", [](Session& s, const json& c) { s.open_gallery(word(c, "model")); }},
-      {"run", [](Session& s, const json& c) { s.run_text(word(c, "text")); }},
-      {"save", [](Session& s, const json& c) { s.save_text(word(c, "text")); }},
-  };
-  return all;
+/// What a command touches, which decides who may give it. One that is not classified is refused to everybody.
+enum class Touches {
+  unclassified,
+  connection,  // of who gives it: anybody
+  session,     // the one that is looked at: whose it is
+  file,        // that of the model: the presenter, where saving is allowed
+};
+
+struct Entry {
+  std::string_view name;
+  Touches touches = Touches::unclassified;
+  Doing doing = nullptr;  // null: the server's business
+};
+
+void take_ghost(Session& session, const json& command) {
+  const auto name = command.find("name");
+  if (name == command.end() || name->is_null()) {
+    session.take_ghost(std::nullopt);
+  } else {
+    session.take_ghost(method_of(command));
+  }
 }
 
-constexpr std::array<std::string_view, 3> of_the_server = {"check", "ping", "rate"};
+/// The one table of commands: the server refuses by it, and tells the page what to offer.
+constexpr std::array table = {
+    Entry{"ping", Touches::connection},
+    Entry{"rate", Touches::connection},
+    Entry{"check", Touches::session},
+    Entry{"play", Touches::session, [](Session& s, const json&) { s.play(); }},
+    Entry{"pause", Touches::session, [](Session& s, const json&) { s.pause(); }},
+    Entry{"cancel", Touches::session, [](Session& s, const json&) { s.pause(); }},
+    Entry{"step", Touches::session, [](Session& s, const json&) { s.step(); }},
+    Entry{"back", Touches::session, [](Session& s, const json&) { s.back(); }},
+    Entry{"reset", Touches::session, [](Session& s, const json&) { s.reset(); }},
+    Entry{"until_event", Touches::session, [](Session& s, const json&) { s.until_event(); }},
+    Entry{"restore", Touches::session, [](Session& s, const json&) { s.restore_parameters(); }},
+    Entry{"undo", Touches::session, [](Session& s, const json&) { s.undo(); }},
+    Entry{"release", Touches::session, [](Session& s, const json& c) { s.release(perhaps_true(c, "still")); }},
+    Entry{"seek", Touches::session, [](Session& s, const json& c) { s.seek(number(c, "t")); }},
+    Entry{"speed", Touches::session, [](Session& s, const json& c) { s.set_speed(number(c, "value")); }},
+    Entry{"set", Touches::session,
+          [](Session& s, const json& c) { s.set_parameter(word(c, "parameter"), number(c, "value")); }},
+    Entry{"input", Touches::session,
+          [](Session& s, const json& c) { s.move_input(word(c, "name"), number(c, "value")); }},
+    Entry{"method", Touches::session, [](Session& s, const json& c) { s.take_method(method_of(c)); }},
+    Entry{"ghost", Touches::session, take_ghost},
+    Entry{"drag", Touches::session, drag},
+    Entry{"pick", Touches::session, [](Session& s, const json& c) { s.pick(index(c, "body")); }},
+    Entry{"open", Touches::session, [](Session& s, const json& c) { s.open_gallery(word(c, "model")); }},
+    Entry{"run", Touches::session, [](Session& s, const json& c) { s.run_text(word(c, "text")); }},
+    Entry{"save", Touches::file, [](Session& s, const json& c) { s.save_text(word(c, "text")); }},
+};
+
+const Entry* entry_of(std::string_view command) {
+  const auto found = std::ranges::find(table, command, &Entry::name);
+  return found == table.end() ? nullptr : &*found;
+}
 
 }  // namespace
+
+bool may(const Rights& rights, std::string_view command) {
+  const Entry* entry = entry_of(command);
+  if (!entry) return false;
+  switch (entry->touches) {
+    case Touches::connection:
+      return true;
+    case Touches::session:
+      return rights.role == Role::presenter || rights.role == Role::owner;
+    case Touches::file:
+      return rights.role == Role::presenter && rights.may_save;
+    case Touches::unclassified:
+      return false;
+  }
+  return false;
+}
+
+std::vector<std::string_view> all_commands() {
+  std::vector<std::string_view> names;
+  for (const Entry& entry : table) names.push_back(entry.name);
+  return names;
+}
+
+std::vector<std::string_view> allowed(const Rights& rights) {
+  std::vector<std::string_view> names = all_commands();
+  std::erase_if(names, [&](std::string_view name) { return !may(rights, name); });
+  return names;
+}
 
 Result<Command> read_command(std::string text) {
   const json command = json::parse(text, nullptr, false);
@@ -117,16 +166,17 @@ Result<Command> read_command(std::string text) {
   const auto what = command.find("do");
   if (what == command.end() || !what->is_string()) return invalid_input("a command has a text `do`");
   std::string name = what->get<std::string>();
-  const bool known = doings().contains(name) || std::ranges::find(of_the_server, name) != of_the_server.end();
-  if (!known) return invalid_input("there is no such command");
+  if (!entry_of(name)) return invalid_input("there is no such command");
   return Command{std::move(name), std::move(text)};
 }
 
 Status obey(Session& session, const Command& command) {
-  const auto doing = doings().find(command.what);
-  if (doing == doings().end()) return invalid_input("there is no such command");
+  const Entry* entry = entry_of(command.what);
+  if (!entry || !entry->doing) return invalid_input("there is no such command");
+  const bool opens = command.what == "run" || command.what == "open";
+  if (!session.is_open() && !opens) return invalid_input("there is no model yet");
   try {
-    doing->second(session, json::parse(command.text));
+    entry->doing(session, json::parse(command.text));
   } catch (const Unfit& unfit) {
     return invalid_input("`" + command.what + "` needs " + unfit.part);
   }

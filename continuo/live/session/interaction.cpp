@@ -146,12 +146,13 @@ void Interaction::move_input(const std::string& name, double value) {
 
 /// The program anew, where other inputs follow their files; the run as it stands.
 void Interaction::prepare_anew() {
-  model::Loaded loaded = model::load(model::Source(text_.path, text_.text));
+  model::Loaded loaded = load(text_);
   if (!loaded.model) return;
   auto shown = std::make_shared<const LiveModel>(prepare(std::move(*loaded.model), settings_.taken));
-  auto main = planned_track(*shown, settings_, settings_.method, notices_);
+  auto main = planned_track(*shown, settings_, settings_.method, playback_.interrupt(), notices_);
   if (!main) return;
-  auto ghost = playback_.ghost() ? planned_track(*shown, settings_, *settings_.ghost, notices_) : nullptr;
+  auto ghost =
+      playback_.ghost() ? planned_track(*shown, settings_, *settings_.ghost, playback_.interrupt(), notices_) : nullptr;
   Variables variables = present_variables(shown->model());
   playback_.change_program(std::move(shown), std::move(variables), std::move(main), std::move(ghost));
   on_new_program_();
@@ -160,7 +161,7 @@ void Interaction::prepare_anew() {
 // ---- methods --------------------------------------------------------------------------------------------------------
 
 std::unique_ptr<Track> Interaction::track_by(const MethodChoice& choice) const {
-  return planned_track(*playback_.shown(), settings_, choice, notices_);
+  return planned_track(*playback_.shown(), settings_, choice, playback_.interrupt(), notices_);
 }
 
 bool Interaction::take_method(MethodChoice choice) {

@@ -181,7 +181,11 @@ std::string model_json(const ModelWords& words) {
   const model::Model& model = words.shown.model();
   const std::vector<double> file = start_values(model);
   json gallery = json::array();
-  for (const GalleryModel& other : words.gallery) gallery.push_back({{"name", other.name}, {"title", other.title}});
+  for (const GalleryModel& other : words.gallery)
+    gallery.push_back({{"name", other.name}, {"title", other.title}, {"subject", other.subject}});
+  const model::Source source(words.path, words.text);
+  json mistakes = json::array();
+  for (const model::Diagnostic& mistake : words.mistakes) mistakes.push_back(diagnostic_of(mistake, source));
   json experiment = accuracy_of(words.plan);
   experiment["from"] = words.plan.from;
   experiment["to"] = words.plan.to;
@@ -192,6 +196,8 @@ std::string model_json(const ModelWords& words) {
                   {"path", words.path},
                   {"text", words.text},
                   {"saveable", words.saveable},
+                  {"welcome", words.welcome},
+                  {"mistakes", mistakes},
                   {"time_unit", model.time_unit},
                   {"dimension", words.shown.dimension},
                   {"scene_count", words.shown.scene.size()},
@@ -283,6 +289,22 @@ std::string saved_json(std::string_view path) {
 
 std::string pong_json(double id) {
   return text_of({{"say", "pong"}, {"id", id}});
+}
+
+std::string role_json(const RoleWords& words) {
+  return text_of({{"say", "role"},
+                  {"role", words.role},
+                  {"may", words.may},
+                  {"own_sessions", words.own_sessions},
+                  {"viewers_address", words.viewers_address.empty() ? json(nullptr) : json(words.viewers_address)}});
+}
+
+std::string room_json(std::size_t viewers) {
+  return text_of({{"say", "room"}, {"viewers", viewers}});
+}
+
+std::string busy_json(std::string_view with, double seconds) {
+  return text_of({{"say", "busy"}, {"with", with.empty() ? json(nullptr) : json(with)}, {"seconds", seconds}});
 }
 
 }  // namespace continuo::live

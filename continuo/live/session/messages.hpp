@@ -22,9 +22,11 @@ struct ModelWords {
   std::uint32_t run;
   const LiveModel& shown;
   std::span<const double> variables;
-  const std::string& path;
+  std::string path;
   const std::string& text;
   bool saveable;
+  bool welcome;                                 // no model was named: the page begins with the gallery
+  std::span<const model::Diagnostic> mistakes;  // of the text, which therefore is not what runs
   std::span<const GalleryModel> gallery;
   const model::Plan& plan;
   const worlds::WorldRun* world;  // null without bodies
@@ -54,5 +56,18 @@ std::string note_json(std::string_view severity, std::string_view text, std::str
 std::string checked_json(double id, std::span<const model::Diagnostic> problems, const model::Source& source);
 std::string saved_json(std::string_view path);
 std::string pong_json(double id);
+
+/// To a new client: who it is, and what it may do.
+struct RoleWords {
+  std::string_view role;
+  std::vector<std::string_view> may;
+  bool own_sessions;            // whether viewers may have sessions of their own
+  std::string viewers_address;  // for the presenter; else empty
+};
+std::string role_json(const RoleWords& words);
+/// To the presenter: how many viewers there are.
+std::string room_json(std::size_t viewers);
+/// What the session is at that takes long; empty: it does so no longer.
+std::string busy_json(std::string_view with, double seconds);
 
 }  // namespace continuo::live

@@ -5,15 +5,20 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/language/load.hpp>
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/live/audience.hpp>
 
 namespace continuo::live {
 
-/// The model's text that is open, and its file.
+/// The model's text that is open, and its file. One that did not come over the network is trusted: it may have any
+/// files read, and not only those of the model's folder.
 struct ModelText {
-  std::string path, text;
+  std::string path{}, text{};
+  bool trusted = false;
 };
+/// Reads the text as a model, with these values of parameters.
+[[nodiscard]] model::Loaded load(const ModelText& text, const model::Overrides& overrides = {});
 
 class Notices {
  public:

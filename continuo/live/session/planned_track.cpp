@@ -47,10 +47,10 @@ std::optional<model::Plan> plan_by(const LiveModel& shown, const Settings& setti
 }  // namespace
 
 std::unique_ptr<Track> planned_track(const LiveModel& shown, const Settings& settings, const MethodChoice& choice,
-                                     Notices& notices) {
+                                     StepInterrupt& interrupt, Notices& notices) {
   const auto plan = plan_by(shown, settings, choice, notices);
   if (!plan) return nullptr;
-  Result<std::unique_ptr<Track>> made = make_track(shown.program, *plan);
+  Result<std::unique_ptr<Track>> made = make_track(shown.program, *plan, &interrupt);
   if (!made) {
     const model::Diagnostic problem = model::error("", {}, made.status().message);
     notices.set_problems({problem});

@@ -10,8 +10,9 @@
 
 namespace continuo::live {
 
-/// Null where the model cannot be run so: `notices` has told why, and keeps it.
+/// Null where the model cannot be run so: `notices` has told why, and keeps it. `interrupt` gives up its steps.
 [[nodiscard]] std::unique_ptr<Track> planned_track(const LiveModel& shown, const Settings& settings,
-                                                   const MethodChoice& choice, Notices& notices);
+                                                   const MethodChoice& choice, StepInterrupt& interrupt,
+                                                   Notices& notices);
 
 }  // namespace continuo::live

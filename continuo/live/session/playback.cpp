@@ -16,6 +16,7 @@ constexpr double rows_of_a_run = 1000;     // at high speed: what a curve of the
 constexpr double most_rows_at_once = 32;   // and a picture at most
 constexpr double rows_of_a_step = 8;       // which has a curve of its own, of high order
 constexpr double longest_single_step = 1;  // second
+constexpr std::size_t few_states = 32;
 
 const std::vector<double>* state_of(const std::optional<Instant>& instant) {
   return instant ? &instant->x : nullptr;
@@ -81,7 +82,7 @@ double Playback::finest_rows(double target) const {
 bool Playback::ask_for_step(double wanted) {
   if (main_over_) return false;
   step_begin_ = main_->t();
-  main_over_ = !main_->advance(wanted);
+  main_over_ = !main_->advance(wanted) && !main_->was_interrupted();
   next_passed_ = 0;
   return true;
 }
@@ -90,6 +91,10 @@ bool Playback::ask_for_step(double wanted) {
 void Playback::lead_ghost(double& stop, double deadline) {
   while (ghost_ && ghost_->t() < stop) {
     if (!ghost_->advance(stop) && ghost_->t() < stop) {
+      if (ghost_->was_interrupted()) {
+        stop = ghost_->t();
+        return;
+      }
       if (!succeeded(ghost_->outcome().ending)) {
         model::Diagnostic why = why_failed(*ghost_);
         why.severity = model::Severity::warning;  // the motion itself goes on
@@ -108,13 +113,14 @@ void Playback::lead_ghost(double& stop, double deadline) {
 }
 
 Playback::Halt Playback::go(double target, double deadline, bool to_event) {
-  constexpr unsigned look_at_clock_every = 8;
+  // To read the clock takes as long as a step of a few equations, and nothing beside one of many.
+  const unsigned look_at_clock_every = shown_->model().states.size() < few_states ? 8 : 1;
   const double every = sample_every(target);
   const double finest = finest_rows(target);
   double next_sample = cursor_ + every, shown = cursor_, looked = cursor_;
   Halt halt = Halt::target;
   for (unsigned count = 1; cursor_ < target; ++count) {
-    if (count % look_at_clock_every == 0 && now_() > deadline) {
+    if (interrupt_.is_requested() || (count % look_at_clock_every == 0 && now_() > deadline)) {
       halt = Halt::deadline;
       break;
     }

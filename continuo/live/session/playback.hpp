@@ -48,6 +48,10 @@ class Playback {
   /// What is due at this time on the wall, if it plays.
   void play_on(double wall);
 
+  /// When it is requested, play_on and step return soon; until it is forgotten nothing advances. For the tracks that
+  /// are made for this playback.
+  StepInterrupt& interrupt() { return interrupt_; }
+
   // The past.
   void back();
   void seek(double t);
@@ -139,6 +143,7 @@ class Playback {
   std::shared_ptr<const LiveModel> shown_;
   Variables variables_;
   std::vector<std::size_t> held_states_;
+  StepInterrupt interrupt_;
   std::unique_ptr<Track> main_, ghost_;
 
   PacedClock clock_;

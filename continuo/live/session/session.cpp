@@ -1,11 +1,13 @@
 // Joins the parts of a session: models come in, runs begin, and the audience is told of both.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <continuo/language/load.hpp>
+#include <continuo/language/load_confined.hpp>
 #include <continuo/live/session.hpp>
 #include <continuo/live/session/messages.hpp>
 #include <continuo/live/session/planned_track.hpp>
@@ -23,6 +25,14 @@ double first_speed(const model::Model& model, double span) {
   const double digit = wanted / power;
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
+
+/// What others are told of a path: not where this computer keeps its files.
+std::string name_of(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/// Stands for a model whose text is wrong.
+constexpr std::string_view nothing_that_moves = "model Nothing\nrest' = 0\nrest(0) = 0\nrun 0..1\n";
 
 }  // namespace
 
@@ -43,24 +53,33 @@ Session::Session(Now now, Audience& audience, Place place)
 // ---- models ---------------------------------------------------------------------------------------------------------
 
 model::Loaded Session::open_file() {
-  model::Loaded loaded = model::load(place_.path);
+  const std::string path = place_.path.empty() && !place_.gallery.empty() ? place_.gallery.front().path : place_.path;
+  model::Loaded loaded = model::load(path);
   notices_.set_problems(loaded.diagnostics);
-  if (loaded.model) begin(*loaded.model, {place_.path, loaded.source.text()});
+  if (loaded.model) begin(*loaded.model, {path, loaded.source.text(), true});
   return loaded;
 }
 
+void Session::open_mistaken(const model::Loaded& loaded) {
+  model::Loaded still = model::load(model::Source("", std::string(nothing_that_moves)));
+  still.model->name = std::filesystem::path(place_.path).stem().string();
+  begin(std::move(*still.model), {place_.path, loaded.source.text()}, loaded.diagnostics);
+}
+
 /// False where it cannot be run: then everything is as it was.
-bool Session::begin(model::Model model, ModelText text) {
-  const bool other = text.path != text_.path || !is_open();
+bool Session::begin(model::Model model, ModelText text, std::vector<model::Diagnostic> mistakes) {
+  const bool other = text.path != text_.path || !is_open() || !mistakes_.empty();
   auto shown =
       std::make_shared<const LiveModel>(prepare(std::move(model), other ? Taken() : interaction_.settings().taken));
   const Settings settings = interaction_.settings();
   ModelText before = std::exchange(text_, std::move(text));
+  mistakes.swap(mistakes_);
   if (other) interaction_.forget_all();
   interaction_.forget_unknown_parameters(shown->model());
   if (!begin_run(std::move(shown))) {
     interaction_.set_settings(settings);
     text_ = std::move(before);
+    mistakes_ = std::move(mistakes);
     return false;
   }
   if (other) playback_.set_speed(first_speed(playback_.shown()->model(), playback_.span()));
@@ -69,9 +88,10 @@ bool Session::begin(model::Model model, ModelText text) {
 
 bool Session::begin_run(std::shared_ptr<const LiveModel> shown) {
   const Settings& settings = interaction_.settings();
-  auto main = planned_track(*shown, settings, settings.method, notices_);
+  auto main = planned_track(*shown, settings, settings.method, playback_.interrupt(), notices_);
   if (!main) return false;
-  auto ghost = settings.ghost ? planned_track(*shown, settings, *settings.ghost, notices_) : nullptr;
+  auto ghost =
+      settings.ghost ? planned_track(*shown, settings, *settings.ghost, playback_.interrupt(), notices_) : nullptr;
   if (!ghost) interaction_.forget_ghost();
   playback_.begin(std::move(shown), std::move(main), std::move(ghost));
   drag_.begin();
@@ -88,14 +108,14 @@ void Session::reset() {
 
 /// Parameters that decide how many equations there are go into the check itself.
 bool Session::load_anew(const std::string& text) {
-  const ModelText written{text_.path, text};
-  model::Loaded loaded = model::load(model::Source(written.path, written.text));
+  const ModelText written{text_.path, text, text_.trusted && text == text_.text};
+  model::Loaded loaded = load(written);
   model::Overrides structural;
   for (const auto& [name, value] : interaction_.settings().parameters) {
     const std::size_t i = loaded.model ? find_parameter(*loaded.model, name) : model::npos;
     if (i != model::npos && loaded.model->parameters[i].structural) structural[name] = value;
   }
-  if (!structural.empty()) loaded = model::load(model::Source(written.path, written.text), {.overrides = structural});
+  if (!structural.empty()) loaded = load(written, structural);
   for (const model::Diagnostic& problem : loaded.diagnostics) notices_.say(problem, &loaded.source);
   return loaded.model && begin(*loaded.model, written);
 }
@@ -105,24 +125,26 @@ void Session::load_anew_after(Change change) {
 }
 
 void Session::run_text(const std::string& text) {
+  if (!is_open()) text_.path = place_.path;
   load_anew(text);
 }
 
 void Session::open_gallery(const std::string& name) {
   const auto found = std::ranges::find(place_.gallery, name, &GalleryModel::name);
   if (found == place_.gallery.end()) return notices_.note(fmt::format("there is no model `{}` in the gallery", name));
-  model::Loaded loaded = model::load(found->path);
+  model::Loaded loaded = model::load_confined(found->path);
   for (const model::Diagnostic& problem : loaded.diagnostics) notices_.say(problem, &loaded.source);
   if (!loaded.model) return;
-  begin(std::move(*loaded.model), {found->path, loaded.source.text()});
+  begin(std::move(*loaded.model), {.path = found->path, .text = loaded.source.text()});
 }
 
 void Session::save_text(const std::string& text) {
-  if (text_.path != place_.path) return notices_.note(fmt::format("only {} is ever written", place_.path));
+  if (!place_.writable) return notices_.note("this view writes no files");
+  if (text_.path != place_.path) return notices_.note(fmt::format("only {} is ever written", name_of(place_.path)));
   if (const Status status = write_atomically(text_.path, text); !status)
     return notices_.say(model::error("", {}, status.message));
   text_.text = text;
-  audience_.hear(Topic::message, saved_json(text_.path));
+  audience_.hear(Topic::message, saved_json(name_of(text_.path)));
 }
 
 // ---- hands ----------------------------------------------------------------------------------------------------------
@@ -180,9 +202,11 @@ std::string Session::model_json() const {
   return live::model_json({.run = run_,
                            .shown = shown(),
                            .variables = *playback_.variables(),
-                           .path = text_.path,
+                           .path = name_of(text_.path),
                            .text = text_.text,
-                           .saveable = text_.path == place_.path,
+                           .saveable = place_.writable && text_.path == place_.path,
+                           .welcome = place_.path.empty(),
+                           .mistakes = mistakes_,
                            .gallery = place_.gallery,
                            .plan = playback_.main().plan(),
                            .world = world(),
