@@ -2,7 +2,9 @@
 import { fromHash, galleryName, toHash } from "./address";
 import { ControlPanel } from "./controls/panel";
 import { icon, iconButton, make, setText } from "./dom";
+import { Board } from "./draw/board";
 import { Editor } from "./editor/editor";
+import { Mistakes } from "./editor/mistakes";
 import { openGallery } from "./gallery";
 import { headingElement } from "./heading";
 import { listenToKeys, openHelp, type Action } from "./keyboard";
@@ -11,20 +13,27 @@ import { PlotPanel } from "./plots/panel";
 import { savePicture } from "./plots/export";
 import { specFromText } from "./plots/specs";
 import type { ModelMessage } from "./protocol";
+import { Room } from "./room";
 import { SceneView } from "./scene/view";
 import type { Session } from "./session";
 import { ThemeChoice } from "./theme";
 import { Transport } from "./transport";
+
+/** The model of the gallery that is there to be drawn in. */
+const drawingBoard = "drawing_board";
 
 export class App {
   readonly scene: SceneView;
   private readonly plots: PlotPanel;
   private readonly controls: ControlPanel;
   private readonly editor: Editor;
+  private readonly board: Board;
   private readonly transport: Transport;
   private readonly theme: ThemeChoice;
   private readonly messages: Messages;
+  private readonly mistakes: Mistakes;
   private readonly heading = make("div", { class: "heading-place" });
+  private readonly vectorButton = iconButton("arrows", "Arrows: velocity and acceleration", "a", () => this.toggleVectors());
   private readonly modelName = make("span", { class: "model-name" });
   private readonly root: HTMLElement;
   private readonly actions: Action[];
@@ -45,7 +54,14 @@ export class App {
     this.plots.changed = () => this.remember();
     this.controls = new ControlPanel(session);
     this.editor = new Editor(session);
+    this.board = new Board(session, this.scene, this.editor);
+    this.scene.element.append(this.board.element);
+    this.board.toggled = (on) => {
+      this.root.classList.toggle("drawing", on);
+      if (on && innerWidth > 900) this.showEditor(true);
+    };
     this.transport = new Transport(session);
+    this.mistakes = new Mistakes((line, column) => this.editor.goTo(line, column));
     this.messages = new Messages(session, (line, column) => {
       this.showEditor(true);
       this.editor.goTo(line, column);
@@ -56,22 +72,31 @@ export class App {
   }
 
   private layOut(): void {
-    const gallery = make("button", { type: "button", class: "gallery-button", title: "Gallery (g)", "aria-keyshortcuts": "g", onclick: () => openGallery(this.session) }, icon("gallery"), this.modelName);
+    const gallery = make("button", { type: "button", class: "gallery-button", title: "Gallery (g)", "aria-keyshortcuts": "g", onclick: () => this.openGallery() }, icon("gallery"), this.modelName);
     const top = make(
       "header",
       { class: "top" },
       gallery,
       this.transport.element,
+      new Room(this.session).element,
       make(
         "div",
         { class: "tools" },
         iconButton("text", "The model's text", "e", () => this.toggleEditor()),
+        iconButton("pencil", "Draw balls, walls and springs", "w", () => this.draw()),
+        this.vectorButton,
         iconButton("picture", "Save the scene as PNG", "", () => this.saveScene()),
         iconButton("share", "Copy the address with parameters and view", "", () => void this.share()),
         iconButton("big", "Larger letters, for a projector", "b", () => this.toggleBig()),
-        iconButton("fit", "Present: the whole screen, without the controls", "s", () => this.present()),
+        iconButton("fit", "Present: the scene on the whole screen", "s", () => this.present()),
         iconButton("theme", "Light or dark", "t", () => this.theme.toggle()),
         iconButton("help", "Help", "?", () => this.help()),
+      ),
+      make(
+        "div",
+        { class: "present-tools" },
+        make("button", { type: "button", class: "framed", title: "Plots beside the scene (o)", "aria-keyshortcuts": "o", onclick: () => this.togglePlots() }, "Plots"),
+        make("button", { type: "button", class: "framed", title: "End the presentation (Escape)", "aria-keyshortcuts": "Escape", onclick: () => this.endPresentation() }, "End"),
       ),
     );
     const tabs = make("nav", { class: "tabs", "aria-label": "Parts of the page" });
@@ -84,7 +109,7 @@ export class App {
       tabs.append(button);
     }
     const handle = make("div", { class: "handle", role: "separator", tabindex: 0, "aria-orientation": "horizontal", "aria-label": "Size of the plots", "aria-valuemin": 12, "aria-valuemax": 85, "aria-valuenow": 40, title: "Drag to resize scene and plots" });
-    const middle = make("main", { class: "middle" }, this.heading, this.scene.element, handle, this.plots.element);
+    const middle = make("main", { class: "middle" }, this.heading, this.mistakes.element, this.scene.element, handle, this.plots.element);
     this.makeHandle(handle, middle);
     const parts = this.embedded ? [top, this.messages.element, this.scene.element] : [top, this.messages.element, this.editor.element, middle, tabs, this.controls.element];
     this.root.append(...parts);
@@ -122,7 +147,7 @@ export class App {
     addEventListener("hashchange", () => this.applyHash());
     // Escape leaves the full screen, and with it the presentation.
     document.addEventListener("fullscreenchange", () => {
-      if (!document.fullscreenElement && this.root.classList.contains("present")) this.present();
+      if (!document.fullscreenElement) this.endPresentation();
     });
   }
 
@@ -130,7 +155,19 @@ export class App {
     document.title = `${model.name} – Continuo`;
     setText(this.modelName, this.session.live ? "Gallery" : model.name);
     this.heading.replaceChildren(headingElement(model.name, model.heading));
+    const mistakes = model.mistakes ?? [];
     this.root.classList.toggle("bare", this.scene.empty);
+    this.root.classList.toggle("mistaken", mistakes.length > 0);
+    if (mistakes.length > 0) {
+      this.showEditor(true);
+      this.editor.showMistakes(mistakes);
+    }
+    this.mistakes.show(model.path, mistakes);
+    if (this.drawNext && galleryName(model) === drawingBoard) {
+      this.drawNext = false;
+      // When the first picture has set the frame.
+      requestAnimationFrame(() => requestAnimationFrame(() => this.board.begin()));
+    }
     if (!this.scene.stage.surface.works && !this.toldNoPicture) {
       this.toldNoPicture = true;
       this.session.said({ say: "message", severity: "warning", code: null, text: "This browser cannot draw scenes, since it has no WebGL.", hint: "Plots and values are available.", line: null, column: null });
@@ -145,9 +182,32 @@ export class App {
         return;
       }
       this.applyHash();
+      if (model.welcome && !wanted) this.openGallery();
     } else {
       this.written = "";
     }
+  }
+
+  private toggleVectors(): void {
+    this.vectorButton.setAttribute("aria-pressed", String(this.scene.toggleVectors()));
+  }
+
+  private openGallery(): void {
+    openGallery(this.session, this.session.model?.gallery.some(({ name }) => name === drawingBoard) ? () => this.draw() : null);
+  }
+
+  private drawNext = false;
+
+  /** In the world that is shown, else on an empty board of the gallery. */
+  private draw(): void {
+    if (this.board.active) return this.board.end();
+    if (this.board.possible) return this.board.begin();
+    if (!this.session.live || !this.session.model?.gallery.some(({ name }) => name === drawingBoard)) {
+      return this.session.said({ say: "message", severity: "note", code: null, text: "Only worlds in the plane can be drawn in.", hint: "A model with `world { }` is needed: `continuo new NAME --template world` writes one.", line: null, column: null });
+    }
+    this.drawNext = true;
+    this.session.send({ do: "pause" });
+    this.session.send({ do: "open", model: drawingBoard });
   }
 
   private written = "";
@@ -213,18 +273,39 @@ export class App {
 
   private toggleBig(): void {
     document.documentElement.classList.toggle("big");
+    this.restyle();
+  }
+
+  /** The size of letters or of the scene has changed. */
+  private restyle(): void {
     this.plots.restyle();
     this.scene.stage.invalidate();
   }
 
-  /** For a lecture: the whole screen, larger letters, scene and plots alone. */
+  private get presents(): boolean {
+    return this.root.classList.contains("present");
+  }
+
+  /** For a lecture: the scene on the whole screen, in letters that can be read from the last row. */
   private present(): void {
-    const on = this.root.classList.toggle("present");
-    document.documentElement.classList.toggle("big", on);
-    if (on) void document.documentElement.requestFullscreen?.().catch(() => undefined);
-    else if (document.fullscreenElement) void document.exitFullscreen().catch(() => undefined);
-    this.plots.restyle();
-    this.scene.stage.invalidate();
+    if (this.presents) return this.endPresentation();
+    this.root.classList.add("present");
+    document.documentElement.classList.add("presenting");
+    void document.documentElement.requestFullscreen?.().catch(() => undefined);
+    this.restyle();
+  }
+
+  private endPresentation(): void {
+    if (!this.presents) return;
+    this.root.classList.remove("present");
+    document.documentElement.classList.remove("presenting");
+    if (document.fullscreenElement) void document.exitFullscreen().catch(() => undefined);
+    this.restyle();
+  }
+
+  private togglePlots(): void {
+    this.root.classList.toggle("present-plots");
+    this.restyle();
   }
 
   private help(): void {
@@ -263,6 +344,7 @@ export class App {
       { keys: ["d"], words: "select the next movable object, or the next body", group: "Scene", run: () => void hand.selectNext() },
       { ...arrow("ArrowUp", 0, 1, "drag the selected object", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
       arrow("ArrowDown", 0, -1, "", "Scene"),
+      { keys: ["a"], words: "arrows for velocity and acceleration", group: "Scene", run: () => this.toggleVectors() },
       { keys: ["x"], words: "the grid", group: "Scene", run: () => {
         this.scene.gridShown = !this.scene.gridShown;
         stage.invalidate();
@@ -273,9 +355,12 @@ export class App {
       { keys: ["m"], words: "go to the list of methods", group: "Page", run: () => this.controls.focusMethod() },
       { keys: ["h"], words: "ghost: a second method beside the first", group: "Page", run: () => this.controls.toggleGhost() },
       { keys: ["e"], words: "the text of the model (Ctrl-Enter runs it, Esc leaves the editor)", group: "Page", run: () => this.toggleEditor() },
-      { keys: ["g"], words: "the gallery", group: "Page", run: () => openGallery(session) },
+      { keys: ["g"], words: "the gallery", group: "Page", run: () => this.openGallery() },
       { keys: ["b"], words: "larger letters", group: "Page", run: () => this.toggleBig() },
-      { keys: ["s"], words: "present: the whole screen, larger letters, no controls; and back", group: "Page", run: () => this.present() },
+      { keys: ["s"], words: "present: the scene on the whole screen; Esc ends it", group: "Page", run: () => this.present() },
+      { keys: ["w"], words: "draw balls, walls and springs", group: "Page", run: () => this.draw() },
+      { keys: ["o"], words: "while presenting: the plots beside the scene", group: "Page", run: () => this.presents && this.togglePlots() },
+      { keys: ["Escape"], words: "", group: "Page", run: () => this.endPresentation() },
       { keys: ["t"], words: "light or dark", group: "Page", run: () => this.theme.toggle() },
       { keys: ["?"], words: "this help", group: "Page", run: () => this.help() },
     ];

@@ -32,8 +32,11 @@ export interface Bodies {
   dimension: 2 | 3;
   radius: number | number[];
   color?: string | string[] | null;
-  walls: { normal: number[]; offset: number }[];
+  names?: string[];
+  walls: { normal: number[]; offset: number; thin?: boolean }[];
   containers: { lower: number[]; upper: number[] }[];
+  /** Between bodies a and b, or from body a to a point. */
+  springs?: { a: number; b: number | null; point: number[] | null }[];
 }
 export interface Parameter {
   name: string;
@@ -62,6 +65,11 @@ export interface Method {
   title: string;
   fixed: boolean;
 }
+export interface GalleryEntry {
+  name: string;
+  title: string;
+  subject?: string;
+}
 export interface ModelMessage {
   say: "model";
   run: number;
@@ -70,6 +78,10 @@ export interface ModelMessage {
   path: string;
   text: string;
   saveable: boolean;
+  /** No model was named: the page begins with the gallery. */
+  welcome?: boolean;
+  /** Of a text that is wrong: nothing moves until it is mended. */
+  mistakes?: Diagnostic[];
   time_unit: string;
   dimension: 2 | 3;
   columns: Column[];
@@ -82,7 +94,7 @@ export interface ModelMessage {
   inputs: Input[];
   methods: Method[];
   experiment: { from: number; to: number; method: string; step: number | null; rtol: number | null };
-  gallery: { name: string; title: string }[];
+  gallery: GalleryEntry[];
   undo: number;
 }
 export interface Choice {
@@ -131,7 +143,23 @@ export interface CheckedMessage {
   id: number;
   diagnostics: Diagnostic[];
 }
+/** Who this page is to the server, and the commands it may give: docs/protocol.md. */
+export interface RoleMessage {
+  say: "role";
+  role: "presenter" | "viewer" | "owner";
+  may: string[];
+  own_sessions: boolean;
+  viewers_address: string | null;
+}
+export interface BusyMessage {
+  say: "busy";
+  with: "motion" | "commands" | null;
+  seconds: number;
+}
 export type Say =
+  | RoleMessage
+  | BusyMessage
+  | { say: "room"; viewers: number }
   | ModelMessage
   | StateMessage
   | EventMessage
@@ -142,7 +170,7 @@ export type Say =
   | { say: "values"; t: number; body: number; name: string; values: Record<string, number> };
 
 export type Command =
-  | { do: "play" | "pause" | "step" | "back" | "reset" | "until_event" | "restore" | "undo" }
+  | { do: "play" | "pause" | "cancel" | "step" | "back" | "reset" | "until_event" | "restore" | "undo" }
   | { do: "release"; still?: boolean }
   | { do: "seek"; t: number }
   | { do: "speed"; value: number }
@@ -180,9 +208,11 @@ export interface Frame {
   /** Where the points of trails were at the time of each row, `path_count` numbers each. */
   paths: Float32Array | null;
   ghostPaths: Float32Array | null;
+  /** Of the bodies, where there are few. */
+  velocities?: Float32Array | null;
 }
 
-const flag = { rewound: 1, ghost: 2, bodies: 4, orientation: 8, lookingBack: 16, ghostBodies: 32, paths: 64 };
+const flag = { rewound: 1, ghost: 2, bodies: 4, orientation: 8, lookingBack: 16, ghostBodies: 32, paths: 64, velocities: 128 };
 
 /** The run a frame belongs to, readable before its model is known. */
 export const runOfFrame = (data: ArrayBuffer): number => (data.byteLength >= 8 ? new DataView(data).getUint32(4, true) : -1);
@@ -235,6 +265,7 @@ export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "column
   const withPaths = (flags & flag.paths) !== 0;
   const paths = withPaths ? floats(rows * (model.path_count ?? 0)) : null;
   const ghostPaths = withPaths && ghost ? floats(rows * (model.path_count ?? 0)) : null;
+  const velocities = (flags & flag.velocities) !== 0 && model.bodies && positions ? floats(positions.length) : null;
   if (short) return `a frame that ends early, after ${data.byteLength} bytes`;
   return {
     run: view.getUint32(4, true),
@@ -254,5 +285,6 @@ export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "column
     ghostOrientations,
     paths,
     ghostPaths,
+    velocities,
   };
 }

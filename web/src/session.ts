@@ -1,10 +1,13 @@
 // What the page knows of the run, and who wants to hear of changes. The one place that messages pass through.
 import { History } from "./history";
-import type { Command, Diagnostic, EventMessage, Frame, ModelMessage, Say, SolverMessage, StateMessage } from "./protocol";
+import type { BusyMessage, Command, Diagnostic, EventMessage, Frame, ModelMessage, RoleMessage, Say, SolverMessage, StateMessage } from "./protocol";
 import type { Link, Listener, Source } from "./source";
 
 export interface Changes {
   link: Link;
+  role: RoleMessage;
+  room: { viewers: number };
+  busy: BusyMessage;
   model: ModelMessage;
   state: StateMessage;
   frame: Frame;
@@ -21,6 +24,8 @@ export interface Changes {
 type Handlers = { [Name in keyof Changes]: ((what: Changes[Name]) => void)[] };
 
 export class Session implements Listener {
+  /** Null: of a recording, or not said yet. */
+  role: RoleMessage | null = null;
   model: ModelMessage | null = null;
   state: StateMessage | null = null;
   frame: Frame | null = null;
@@ -29,7 +34,7 @@ export class Session implements Listener {
   /** Where the pointer is in a plot: every view shows this instant. */
   cursor: number | null = null;
   private readonly handlers: Handlers = {
-    link: [], model: [], state: [], frame: [], event: [], message: [], checked: [], saved: [], values: [], cursor: [], rewound: [], theme: [],
+    link: [], role: [], room: [], busy: [], model: [], state: [], frame: [], event: [], message: [], checked: [], saved: [], values: [], cursor: [], rewound: [], theme: [],
   };
 
   private run = -1;
@@ -37,8 +42,14 @@ export class Session implements Listener {
 
   constructor(private readonly source: Source) {}
 
+  /** Whether somebody at this page can change what moves: it is no recording, and not the presenter's alone. */
   get live(): boolean {
-    return this.source.live;
+    return this.source.live && this.may("run");
+  }
+
+  /** Whether the server takes this command from this page. */
+  may(command: Command["do"]): boolean {
+    return this.role === null || this.role.may.includes(command);
   }
 
   on<Name extends keyof Changes>(name: Name, handler: (what: Changes[Name]) => void): void {
@@ -54,7 +65,7 @@ export class Session implements Listener {
   }
 
   send(command: Command): void {
-    this.source.send(command);
+    if (this.may(command.do)) this.source.send(command);
   }
 
   /** The instant that is shown: under the pointer, else that of the picture. */
@@ -74,6 +85,16 @@ export class Session implements Listener {
 
   said(message: Say): void {
     switch (message.say) {
+      case "role":
+        this.role = message;
+        this.tell("role", message);
+        break;
+      case "room":
+        this.tell("room", message);
+        break;
+      case "busy":
+        this.tell("busy", message);
+        break;
       case "model": {
         const before = this.model;
         const same = before !== null && sameModel(before, message);

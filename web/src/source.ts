@@ -49,9 +49,9 @@ export class Server implements Source {
     };
   }
 
-  /** Frames of a run before the model's are late, and dropped. */
+  /** Frames of another run than the model's are dropped: their numbers mean something else. */
   private read(data: ArrayBuffer, listener: Listener): void {
-    if (!this.model || runOfFrame(data) < this.model.run) return;
+    if (!this.model || runOfFrame(data) !== this.model.run) return;
     const frame = decodeFrame(data, this.model);
     if (typeof frame === "string") console.error(`continuo: ${frame}`);
     else listener.arrived(frame);
@@ -65,7 +65,8 @@ export class Server implements Source {
 
 /** The address of the server's socket, from that of the page. */
 export function socketAddress(location: Pick<Location, "protocol" | "host" | "search">): string {
-  const token = new URLSearchParams(location.search).get("token");
+  const query = new URLSearchParams(location.search);
+  const token = query.get("token");
   const secure = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${secure}//${location.host}/live${token ? `?token=${encodeURIComponent(token)}` : ""}`;
+  return `${secure}//${location.host}/live${token ? `?token=${encodeURIComponent(token)}` : ""}${token && query.has("own") ? "&own" : ""}`;
 }

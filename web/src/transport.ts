@@ -52,6 +52,7 @@ export class Transport {
       this.reached,
       this.slow,
     );
+    if (!session.may("play")) for (const part of this.element.querySelectorAll<HTMLInputElement>("button, select, input")) part.disabled = true;
     session.on("state", (state) => this.show(state));
     session.on("frame", ({ t }) => this.showTime(t));
   }

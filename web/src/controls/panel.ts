@@ -55,7 +55,7 @@ export class ControlPanel {
     this.parameters.clear();
     this.inputs.clear();
     const parts: HTMLElement[] = [];
-    if (!session.live) parts.push(make("p", { class: "frozen-note" }, "A recording: play it, look back. To change something, run the model in Continuo."));
+    if (!session.live) parts.push(make("p", { class: "frozen-note" }, session.role ? "You see what the presenter does. Looking back and the plots are yours." : "A recording: play it, look back. To change something, run the model in Continuo."));
     if (model.inputs.length > 0) {
       const rows = model.inputs.map((input) => {
         const hold = input.key ? make("button", { type: "button", class: "key", title: `Hold ${input.key}; with Shift for the opposite direction`, "aria-label": `Hold: ${input.name}` }, input.key) : null;

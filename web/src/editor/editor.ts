@@ -1,13 +1,15 @@
 // The model's text: highlighted, checked as one types, run on Ctrl-Enter.
-import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
+import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory, redo, undo } from "@codemirror/commands";
 import { bracketMatching, HighlightStyle, syntaxHighlighting } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics, type Diagnostic as Mark } from "@codemirror/lint";
 import { EditorState, type Text } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
-import { iconButton, make, setText } from "../dom";
+import { galleryName } from "../address";
+import { download, iconButton, make, setText } from "../dom";
 import type { Diagnostic, ModelMessage } from "../protocol";
 import type { Session } from "../session";
+import { beside, besideEffects } from "./beside";
 import { sim } from "./language";
 
 const colors = HighlightStyle.define([
@@ -46,6 +48,7 @@ export class Editor {
         extensions: [
           lineNumbers(),
           lintGutter(),
+          beside,
           history(),
           drawSelection(),
           bracketMatching(),
@@ -76,6 +79,10 @@ export class Editor {
     session.on("checked", ({ id, diagnostics }) => {
       if (id === this.asked) this.mark(diagnostics);
     });
+    session.on("checked", ({ id, diagnostics }) => {
+      // A text that was wrong runs as soon as it is in order.
+      if (id === this.asked && session.model?.mistakes?.length && !diagnostics.some(({ severity }) => severity === "error")) this.run();
+    });
     session.on("saved", (path) => setText(this.status, `saved to ${path}`));
     session.on("message", (message) => {
       if (message.line) this.mark([message]);
@@ -90,6 +97,27 @@ export class Editor {
     this.view.focus();
   }
 
+  /** Changes the text, in one step of its undoing, and runs it. */
+  write(changes: readonly { from: number; to: number; insert: string }[]): void {
+    this.view.dispatch({ changes: [...changes], annotations: isolateHistory.of("full") });
+    this.run();
+  }
+
+  undo(): void {
+    if (undo(this.view)) this.run();
+  }
+
+  redo(): void {
+    if (redo(this.view)) this.run();
+  }
+
+  /** The mistakes of the text, and the first of them in view. */
+  showMistakes(mistakes: readonly Diagnostic[]): void {
+    this.mark(mistakes);
+    const first = mistakes.find(({ severity }) => severity === "error") ?? mistakes[0];
+    if (first) this.goTo(first.line ?? 1, first.column ?? 1);
+  }
+
   goTo(line: number, column: number): void {
     const { from } = rangeOf(this.view.state.doc, { line, column, length: 1 });
     this.view.dispatch({ selection: { anchor: from }, effects: EditorView.scrollIntoView(from, { y: "center" }) });
@@ -97,11 +125,13 @@ export class Editor {
   }
 
   private open(model: ModelMessage): void {
-    this.save.hidden = !model.saveable;
+    const saves = model.saveable && this.session.may("save");
+    this.save.title = saves ? "Save the file (Ctrl-S)" : "Save a copy (Ctrl-S)";
+    this.save.setAttribute("aria-label", saves ? "Save the file" : "Save a copy");
     // What was just run, or is being typed on, stays as it is.
     if (model.text !== this.text && model.text !== this.waiting) {
       this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: model.text } });
-      this.view.dispatch(setDiagnostics(this.view.state, []));
+      this.mark([]);
       this.view.scrollDOM.scrollTop = 0;
     }
     this.waiting = null;
@@ -123,6 +153,7 @@ export class Editor {
       severity: each.severity === "note" ? "info" : each.severity,
       message: `${each.code ? `${each.code}: ` : ""}${each.text}${each.hint ? `\n${each.hint}` : ""}`,
     }));
+    this.view.dispatch({ effects: besideEffects(doc, diagnostics) });
     this.view.dispatch(setDiagnostics(this.view.state, marks));
     const errors = marks.filter(({ severity }) => severity === "error").length;
     setText(this.status, errors > 0 ? `${errors} error${errors > 1 ? "s" : ""}` : this.text === this.session.model?.text ? "" : "in order; Ctrl-Enter runs it");
@@ -138,7 +169,9 @@ export class Editor {
   }
 
   private saveText(): boolean {
-    if (this.session.live && this.session.model?.saveable) this.session.send({ do: "save", text: this.text });
+    const { model, live } = this.session;
+    if (live && model?.saveable && this.session.may("save")) this.session.send({ do: "save", text: this.text });
+    else if (model) download(`${galleryName(model)}.sim`, new Blob([this.text], { type: "text/plain" }));
     return true;
   }
 }

@@ -17,7 +17,7 @@ test("each model of the gallery", async (t) => {
   assert.deepEqual([...names, ...boundary].sort(), files.sort(), "the gallery is the folder");
   for (const name of names) {
     await tab.evaluate((wanted) => globalThis.continuo.session.send({ do: "open", model: wanted }), name);
-    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path.endsWith(`/${wanted}.sim`), name, { timeout: 10000 });
+    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path === `${wanted}.sim`, name, { timeout: 10000 });
     await tab.waitForFunction(() => globalThis.continuo.session.history.length > 0 || document.querySelector(".message"), null, { timeout: 10000 });
     await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
     await tab.waitForFunction(() => globalThis.continuo.session.history.length > 3 || document.querySelector(".message"), null, { timeout: 10000 });

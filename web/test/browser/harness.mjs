@@ -18,17 +18,18 @@ const browserPath = [process.env.CONTINUO_BROWSER, "/usr/bin/chromium", "/usr/bi
 export const model = (name) => path.join(root, "models", `${name}.sim`);
 export const pageOptions = page ? ["--page", page] : [];
 
-/** `continuo view FILE`: its address, and how to end it. */
+/** `continuo view FILE`, without a file where that is null: its address, with --listen also that of viewers, and how to
+ *  end it. */
 export async function serve(t, file, ...options) {
-  const child = spawn(command, ["view", file, "--no-open", ...pageOptions, ...options], { stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn(command, ["view", ...(file === null ? [] : [file]), "--no-open", ...pageOptions, ...options], { stdio: ["ignore", "pipe", "pipe"], cwd: root });
   let said = "";
   child.stderr.on("data", (data) => (said += data));
-  const url = await new Promise((resolve, reject) => {
+  const [url, viewers] = await new Promise((resolve, reject) => {
     let out = "";
     child.stdout.on("data", (data) => {
       out += data;
-      const found = /http:\S+/.exec(out);
-      if (found) resolve(found[0]);
+      const found = out.match(/http:\S+(?=\n)/g) ?? [];
+      if (found.length >= (options.includes("--listen") ? 2 : 1)) resolve(found);
     });
     child.on("exit", (code) => reject(new Error(`continuo view ended with ${code}: ${said}`)));
   });
@@ -39,7 +40,7 @@ export async function serve(t, file, ...options) {
     child.kill("SIGINT");
     await ended;
   });
-  return { url, child };
+  return { url, viewers, child };
 }
 
 let shared;
