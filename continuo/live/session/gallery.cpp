@@ -1,8 +1,11 @@
 // Finds the models of a folder that can move while somebody looks.
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include <continuo/language/load.hpp>
@@ -33,6 +36,30 @@ bool has_no_start(const model::Source& source) {
   return loaded.model && !runs::kind_of(*loaded.model).has_start;
 }
 
+/// Where a model stands in the list of its folder.
+struct Listed {
+  std::size_t place;
+  std::string subject;
+};
+
+/// The list `gallery.txt`; empty where there is none.
+std::map<std::string, Listed, std::less<>> list_in(const std::filesystem::path& folder) {
+  std::map<std::string, Listed, std::less<>> listed;
+  std::ifstream file(folder / "gallery.txt");
+  std::string subject;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t begin = line.find_first_not_of(" \t"), end = line.find_last_not_of(" \t\r");
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const std::string words = line.substr(begin, end + 1 - begin);
+    if (begin == 0) {
+      subject = words;
+    } else {
+      listed.emplace(words, Listed{listed.size(), subject});
+    }
+  }
+  return listed;
+}
+
 }  // namespace
 
 std::vector<GalleryModel> gallery_in(const std::string& folder) {
@@ -47,7 +74,14 @@ std::vector<GalleryModel> gallery_in(const std::string& folder) {
     const bool heading = line.starts_with('#') && begin != std::string::npos;
     found.push_back({entry.path().stem().string(), heading ? line.substr(begin) : "", entry.path().string()});
   }
-  std::ranges::sort(found, {}, &GalleryModel::name);
+  const auto listed = list_in(folder);
+  for (GalleryModel& model : found) {
+    if (const auto place = listed.find(model.name); place != listed.end()) model.subject = place->second.subject;
+  }
+  std::ranges::sort(found, {}, [&](const GalleryModel& model) {
+    const auto place = listed.find(model.name);
+    return std::pair(place == listed.end() ? listed.size() : place->second.place, model.name);
+  });
   return found;
 }
 
