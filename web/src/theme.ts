@@ -1,19 +1,16 @@
 // Light or dark: as the system says until a person chooses.
+import { recall, remember } from "./memory";
 import type { Theme } from "./palette";
 
 const remembered = "continuo-theme";
 
-function recall(): Theme | null {
-  try {
-    const value = localStorage.getItem(remembered);
-    return value === "light" || value === "dark" ? value : null;
-  } catch {
-    return null;  // a page from a file may have no memory
-  }
+function chosenBefore(): Theme | null {
+  const value = recall(remembered);
+  return value === "light" || value === "dark" ? value : null;
 }
 
 export class ThemeChoice {
-  private chosen = recall();
+  private chosen = chosenBefore();
   private readonly dark = matchMedia("(prefers-color-scheme: dark)");
 
   constructor(private readonly changed: (theme: Theme) => void) {
@@ -27,11 +24,7 @@ export class ThemeChoice {
 
   toggle(): void {
     this.chosen = this.theme === "light" ? "dark" : "light";
-    try {
-      localStorage.setItem(remembered, this.chosen);
-    } catch {
-      // it will be asked again
-    }
+    remember(remembered, this.chosen);
     this.update();
   }
 

@@ -26,6 +26,9 @@ export class Figure {
   private readonly dot = document.createElement("div");
   private ranges = new Map<string, Range>();
   private readonly units: string[];
+  /** Powers of ten along an axis, of the size of what is plotted: for errors and distances. */
+  private readonly logarithmic: boolean;
+  private readonly logarithmicX: boolean;
 
   constructor(
     readonly spec: PlotSpec,
@@ -33,9 +36,9 @@ export class Figure {
     private readonly host: HTMLElement,
     private readonly look: Look,
     private windowLength: number,
-    /** Powers of ten upward, of the size of what is plotted: for errors and distances. */
-    readonly logarithmic = false,
   ) {
+    this.logarithmic = spec.log?.y ?? false;
+    this.logarithmicX = spec.log?.x ?? false;
     this.units = [...new Set(spec.curves.map(({ unit }) => unit))];
     this.plot = new uPlot(this.options(), this.emptyData(), host);
     this.cursor.className = "now";
@@ -84,14 +87,17 @@ export class Figure {
       if (range) this.ranges.set(unit, this.logarithmic ? decades(range) : calm(this.ranges.get(unit) ?? null, range));
     }
     if (spec.against) {
-      const xs = piece(history.columns[spec.against.column]);
+      const sizedX = (values: Float32Array): Float32Array => (this.logarithmicX ? values.map(sizeOrNone) : values);
+      const xs = sizedX(piece(history.columns[spec.against.column]));
       const range = finiteRange(xs, 0, xs.length);
-      if (range) this.ranges.set("x", calm(this.ranges.get("x") ?? null, range));
-      const gx = piece(history.ghosts[spec.against.column]);
+      if (range) this.ranges.set("x", this.logarithmicX ? decades(range) : calm(this.ranges.get("x") ?? null, range));
+      const gx = sizedX(piece(history.ghosts[spec.against.column]));
       plot.setData([null, ...curves.map((ys) => [xs, ys]), ...ghosts.map((ys) => [ys.length > 0 ? gx : none, ys])] as unknown as uPlot.AlignedData, false);
     } else {
-      this.ranges.set("x", [from, to]);
-      const ts = history.t.subarray(begin, end);
+      // The start at t = 0 is not on a logarithmic axis: six powers of ten before the end are.
+      const firstShown = this.logarithmicX ? Math.max(from, history.t.find((t) => t > 0) ?? to / 10, 1e-6 * to) : from;
+      this.ranges.set("x", [firstShown, to > firstShown ? to : 10 * firstShown]);
+      const ts = this.logarithmicX ? history.t.slice(begin, end).map((t) => Math.max(t, 1e-300)) : history.t.subarray(begin, end);
       const absent = ghosts.some((ys) => ys.length > 0) ? null : new Float32Array(ts.length).fill(NaN);
       plot.setData([ts, ...curves, ...ghosts.map((ys) => (ys.length > 0 ? ys : (absent ?? ys)))] as unknown as uPlot.AlignedData, false);
     }
@@ -112,7 +118,8 @@ export class Figure {
       return;
     }
     const curve = spec.curves[0]!;
-    const x = plot.valToPos(history.valueAt(spec.against.column, t), "x");
+    const along = history.valueAt(spec.against.column, t);
+    const x = plot.valToPos(this.logarithmicX ? sizeOrNone(along) : along, "x");
     const value = history.valueAt(curve.column, t);
     const y = plot.valToPos(this.logarithmic ? sizeOrNone(value) : value, this.scale(curve.unit));
     const seen = Number.isFinite(x + y);
@@ -137,7 +144,7 @@ export class Figure {
     const x = this.ranges.get("x") ?? [0, 1];
     const unit = this.units[0]!;
     const y = this.ranges.get(unit);
-    if (spec.against && spec.against.unit === unit && unit !== "" && unit !== "1" && this.units.length === 1 && y && plot.over.clientWidth > 0 && alike(x, y)) {
+    if (spec.against && !this.logarithmic && !this.logarithmicX && spec.against.unit === unit && unit !== "" && unit !== "1" && this.units.length === 1 && y && plot.over.clientWidth > 0 && alike(x, y)) {
       const [wideX, wideY] = equalScales(x, y, plot.over.clientWidth, plot.over.clientHeight);
       plot.batch(() => {
         plot.setScale("x", { min: wideX[0], max: wideX[1] });
@@ -194,16 +201,22 @@ export class Figure {
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        x: { time: false, auto: false, range: (_u, min, max) => [min, max] },
+        x: { time: false, auto: false, ...(this.logarithmicX ? { distr: 3 } : {}), range: (_u, min, max) => [min, max] },
         ...Object.fromEntries(this.units.map((unit) => [this.scale(unit), { auto: false, ...(this.logarithmic ? { distr: 3 } : {}), range: (_u: uPlot, min: number, max: number) => [min, max] }])),
       } as uPlot.Scales,
       axes: [
-        { ...axis, label: phase ? withUnit(spec.against!.label, spec.against!.unit) : withUnit("t", timeUnit), size: 1.5 * look.rem, space: 4.2 * look.rem },
+        {
+          ...axis,
+          label: phase ? this.nameOf(spec.against!.label, spec.against!.unit, this.logarithmicX) : withUnit("t", timeUnit),
+          ...(this.logarithmicX ? powerAxis : {}),
+          size: 1.5 * look.rem,
+          space: 4.2 * look.rem,
+        },
         ...this.units.slice(0, 2).map((unit, index) => ({
           ...axis,
           scale: this.scale(unit),
           side: index === 0 ? 3 : 1,
-          label: this.logarithmic ? `|${withUnit(this.namesOf(unit), unit).replace(/ \[|$/, "|$&")}` : withUnit(this.namesOf(unit), unit),
+          label: this.nameOf(this.namesOf(unit), unit, this.logarithmic),
           ...(this.logarithmic ? powerAxis : {}),
           grid: { ...axis.grid!, show: index === 0 },
           space: 2 * look.rem,
@@ -213,6 +226,11 @@ export class Figure {
       series: [phase ? (null as unknown as uPlot.Series) : {}, ...indices.map((i) => series(i, false)), ...indices.map((i) => series(i, true))],
       hooks: { drawClear: [(u) => this.paintGround(u)], drawAxes: [(u) => this.drawZero(u)], draw: [(u) => this.drawEvents(u)] },
     };
+  }
+
+  /** Of a logarithmic axis the name is that of the size: "|x| [m]". */
+  private nameOf(names: string, unit: string, logarithmic: boolean): string {
+    return logarithmic ? `|${withUnit(names, unit).replace(/ \[|$/, "|$&")}` : withUnit(names, unit);
   }
 
   /** What stands beside the axis of a unit. */

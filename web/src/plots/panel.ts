@@ -63,7 +63,7 @@ export class PlotPanel {
   }
 
   get customPlots(): string[] {
-    return this.added.map(specText);
+    return [...this.replaced.values(), ...this.added].map(specText);
   }
 
   add(spec: PlotSpec): void {
@@ -78,6 +78,8 @@ export class PlotPanel {
 
   private open(model: ModelMessage): void {
     this.added = [];
+    this.replaced.clear();
+    this.hidden.clear();
     const { from, to } = model.experiment;
     const span = Number.isFinite(to - from) && to > from ? to - from : Infinity;
     const choices: [string, number][] = Number.isFinite(span)
@@ -103,11 +105,11 @@ export class PlotPanel {
     this.cards.replaceChildren();
     if (!model) return;
     const distance = this.session.state?.ghost ? distanceSpec(model.columns) : null;
-    const removed = new Set(this.specs.filter((spec) => this.hidden.has(spec.id)).map(({ id }) => id));
-    this.specs = [...defaultSpecs(model), ...this.added, ...(distance ? [distance] : [])];
+    this.specs = [...defaultSpecs(model), ...(distance ? [distance] : [])].map((spec) => this.replaced.get(spec.id) ?? spec);
+    this.specs.splice(this.specs.length - (distance ? 1 : 0), 0, ...this.added);
     this.element.classList.toggle("ghosted", distance !== null);
     const look = this.look();
-    for (const spec of this.specs) if (!removed.has(spec.id)) this.show(spec, look);
+    for (const spec of this.specs) if (!this.hidden.has(spec.id)) this.show(spec, look);
     const energies = energiesOf(model.columns);
     this.bars = energies.length > 1 ? new EnergyBars(this.session, energies, this.theme) : null;
     if (this.bars) {
@@ -120,6 +122,8 @@ export class PlotPanel {
   }
 
   private readonly hidden = new Set<string>();
+  /** What stands in the place of the model's own plots. */
+  private readonly replaced = new Map<string, PlotSpec>();
 
   private show(spec: PlotSpec, look: Look): void {
     const host = make("div", { class: "plot-host", role: "img", "aria-label": `Plot: ${spec.title}` });
@@ -135,6 +139,7 @@ export class PlotPanel {
         make(
           "span",
           { class: "plot-buttons" },
+          make("button", { type: "button", class: "small", title: "Choose what is plotted against what", "aria-label": `Axes of “${spec.title}”`, onclick: () => this.chooseAxes(spec) }, "axes"),
           this.logButton(spec),
           iconButton("picture", `Save “${spec.title}” as PNG`, "", () => this.savePlot(spec)),
           iconButton("table", `Save “${spec.title}” as CSV`, "", () => this.saveColumns(spec)),
@@ -144,21 +149,17 @@ export class PlotPanel {
       host,
     );
     this.cards.append(card);
-    const figure = new Figure(spec, this.session, host, look, this.windowLength, this.logs.has(spec.id));
+    const figure = new Figure(spec, this.session, host, look, this.windowLength);
     if (spec.curves.length > 1) {
       spec.curves.slice(0, 8).forEach(({ label }, index) => legend.append(make("i", { style: `--color: ${figure.color(index)}` }), spec.id === "energy" && label === "energy" ? "sum" : formatName(label)));
     }
     this.shown.push({ figure, card });
   }
 
-  private readonly logs = new Set<string>();
-
   private logButton(spec: PlotSpec): HTMLButtonElement {
-    const on = this.logs.has(spec.id);
+    const on = spec.log?.y ?? false;
     const button = make("button", { type: "button", class: "small log", title: "Logarithmic axis, for the absolute values", "aria-label": `Logarithmic axis of “${spec.title}”`, "aria-pressed": String(on), onclick: () => {
-      if (on) this.logs.delete(spec.id);
-      else this.logs.add(spec.id);
-      this.rebuild();
+      this.change(spec, { ...spec, log: { x: spec.log?.x ?? false, y: !on } });
     } }, "log");
     return button;
   }
@@ -169,6 +170,20 @@ export class PlotPanel {
     else this.hidden.add(spec.id);
     this.rebuild();
     this.changed();
+  }
+
+  /** Another plot in the place of one. */
+  private change(spec: PlotSpec, other: PlotSpec): void {
+    const index = this.added.indexOf(spec);
+    if (index >= 0) this.added[index] = { ...other, id: spec.id };
+    else this.replaced.set(spec.id, { ...other, id: spec.id });
+    this.rebuild();
+    this.changed();
+  }
+
+  private chooseAxes(spec: PlotSpec): void {
+    const model = this.session.model;
+    if (model) choosePlot(model.columns, (other) => this.change(spec, other), spec);
   }
 
   private choose(): void {

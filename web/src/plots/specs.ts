@@ -8,6 +8,8 @@ export interface PlotSpec {
   curves: Series[];
   /** Null: against time. */
   against: Series | null;
+  /** The axes that are logarithmic. */
+  log?: { x: boolean; y: boolean };
 }
 
 const seriesOf = (columns: readonly Column[], index: number): Series => ({ label: columns[index]!.name, column: index, unit: columns[index]!.unit });
@@ -68,12 +70,13 @@ export function distanceSpec(columns: readonly Column[]): PlotSpec | null {
   return distance.length > 0 ? { id: "distance", title: "Distance of the ghost", curves: distance, against: null } : null;
 }
 
-/** `x,v:t` or `y:x`; names that need it are escaped. */
-export const specText = (spec: PlotSpec): string =>
-  `${spec.curves.map(({ label }) => encodeURIComponent(label)).join(",")}:${spec.against ? encodeURIComponent(spec.against.label) : "t"}`;
+/** `x,v:t` or `y:x`, with `:logxy` where axes are logarithmic; names that need it are escaped. */
+export const specText = ({ curves, against, log }: PlotSpec): string =>
+  `${curves.map(({ label }) => encodeURIComponent(label)).join(",")}:${against ? encodeURIComponent(against.label) : "t"}` +
+  (log?.x || log?.y ? `:log${log.x ? "x" : ""}${log.y ? "y" : ""}` : "");
 
 export function specFromText(text: string, columns: readonly Column[], id: string): PlotSpec | null {
-  const [names, x] = text.split(":");
+  const [names, x, log] = text.split(":");
   if (!names || !x) return null;
   const find = (name: string): Series[] => {
     const index = columns.findIndex((column) => column.name === decodeURIComponent(name));
@@ -82,5 +85,6 @@ export function specFromText(text: string, columns: readonly Column[], id: strin
   const curves = names.split(",").flatMap(find);
   const against = x === "t" ? null : (find(x)[0] ?? null);
   if (curves.length === 0 || (x !== "t" && !against)) return null;
-  return { id, title: titleOf(curves, against), curves, against };
+  const logs = log?.startsWith("log") ? { log: { x: log.includes("x"), y: log.includes("y") } } : {};
+  return { id, title: titleOf(curves, against), curves, against, ...logs };
 }
