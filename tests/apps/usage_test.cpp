@@ -228,5 +228,28 @@ TEST(New, TheStarterRunsAndIsNeverOverwritten) {
   EXPECT_EQ(shell.read("my-spring.sim"), "mine");
 }
 
+TEST(New, EachTemplateIsInOrderPassesItsChecksAndHasADrawing) {
+  const Shell shell;
+  for (const std::string name : {"spring", "ball", "pendulum", "world"}) {
+    EXPECT_EQ(shell.run("new own_" + name + " --template " + name).exit, 0) << name;
+    EXPECT_THAT(shell.read("own_" + name + ".sim"), HasSubstr("\ndraw { ")) << name;
+    const auto checked = shell.run("check own_" + name + ".sim");
+    EXPECT_EQ(checked.exit, 0) << checked.err;
+    EXPECT_THAT(checked.err, Not(HasSubstr("warning"))) << name;
+    EXPECT_EQ(shell.run("verify own_" + name + ".sim").exit, 0) << name;
+  }
+  const auto wrong = shell.run("new other --template pendulm");
+  EXPECT_EQ(wrong.exit, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean `pendulum`"));
+}
+
+TEST(View, AModelThatIsNotThereIsLookedForInTheGallery) {
+  const Shell shell;
+  const auto result = shell.run("view bouncing_bal.sim --no-open");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("bouncing_ball.sim"));
+  EXPECT_EQ(shell.run("view --export out.html").exit, 1);
+}
+
 }  // namespace
 }  // namespace continuo::app
