@@ -14,6 +14,7 @@ namespace continuo::live {
 struct Bodies {
   std::size_t dimension = 3;
   std::vector<float> position, orientation;
+  std::vector<float> velocity{};  // of worlds with few bodies
   /// The number of bodies.
   [[nodiscard]] std::size_t count() const { return position.size() / dimension; }
 };

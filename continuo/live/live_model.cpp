@@ -6,6 +6,7 @@
 
 #include <continuo/language/world.hpp>
 #include <continuo/live/live_model.hpp>
+#include <continuo/live/motion/point_rate.hpp>
 
 namespace continuo::live {
 
@@ -14,6 +15,7 @@ namespace {
 using model::NodeId;
 
 constexpr std::size_t most_default_curves = 8;
+constexpr std::size_t most_vectors = 60;  // arrows at more things would cover them
 
 class Preparation {
  public:
@@ -95,6 +97,26 @@ class Preparation {
     return numbers;
   }
 
+  /// The velocity of a point, and its acceleration, in each mode that has its own: `velocity`, or `velocity:MODE`.
+  void add_vectors(const std::vector<NodeId>& point, SceneItem& made) {
+    std::vector<std::vector<NodeId>> in_modes(model_.modes.size(), point);
+    for (const char* name : {"velocity", "acceleration"}) {
+      for (std::size_t mode = 0; mode < in_modes.size(); ++mode) {
+        for (NodeId& node : in_modes[mode]) {
+          const auto rate = rate_along_motion(model_, node, mode);
+          if (!rate) return;
+          node = *rate;
+        }
+      }
+      const bool same = std::ranges::all_of(in_modes, [&](const auto& nodes) { return nodes == in_modes.front(); });
+      for (std::size_t mode = 0; mode < (same ? 1 : in_modes.size()); ++mode) {
+        std::string full = name;
+        if (!same) full.append(":").append(model_.modes[mode].name);
+        made.numbers.push_back(place(std::move(full), in_modes[mode]));
+      }
+    }
+  }
+
   void draw(const model::DrawItem& item) {
     using model::Shape;
     SceneItem made{
@@ -117,6 +139,8 @@ class Preparation {
         made.numbers.push_back(place(attribute.name, attribute.value.numbers));
       }
     }
+    if ((item.shape == Shape::ball || item.shape == Shape::box) && most_vectors > vectors_++)
+      add_vectors(item.arguments.front().numbers, made);
     if (item.shape == Shape::trail) {
       for (const NodeId node : item.arguments.front().numbers) {
         made.path.push_back(made_.paths.size());
@@ -148,6 +172,7 @@ class Preparation {
   model::Model model_;
   LiveModel made_;
   std::map<NodeId, std::size_t> column_of_;
+  std::size_t vectors_ = 0;  // the drawn things that have been given vectors
 };
 
 }  // namespace

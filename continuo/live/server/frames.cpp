@@ -38,6 +38,7 @@ std::uint32_t flags_of(const Slice& slice, const FrameRows& rows, bool rewound) 
   if (slice.looking_back) flags |= frame_looks_back;
   if (slice.bodies && slice.ghost_bodies) flags |= frame_has_ghost_bodies;
   if (!rows.paths.empty()) flags |= frame_has_paths;
+  if (slice.bodies && !slice.bodies->velocity.empty()) flags |= frame_has_velocities;
   return flags;
 }
 
@@ -71,6 +72,7 @@ std::string frame_of(const Slice& slice, const FrameRows& rows, bool rewound) {
   }
   bytes.add(rows.paths);
   if (slice.ghost) bytes.add(rows.ghost_paths);
+  if (slice.bodies) bytes.add(std::span<const float>(slice.bodies->velocity));
   return bytes.take();
 }
 

@@ -18,6 +18,7 @@ enum FrameFlag : std::uint32_t {
   frame_looks_back = 16,
   frame_has_ghost_bodies = 32,
   frame_has_paths = 64,
+  frame_has_velocities = 128,
 };
 
 struct FrameRows {

@@ -19,6 +19,11 @@ std::shared_ptr<const Bodies> bodies_of(const Instant& instant, const worlds::Wo
     for (std::size_t k = 0; k < dimension; ++k)
       bodies->position.push_back(static_cast<float>(instant.x[i * states + 2 * k]));
   }
+  constexpr std::size_t few = 500;  // arrows at more bodies say nothing
+  for (std::size_t i = 0; i < count && count <= few; ++i) {
+    for (std::size_t k = 0; k < dimension; ++k)
+      bodies->velocity.push_back(static_cast<float>(instant.x[i * states + 2 * k + 1]));
+  }
   constexpr std::size_t angle = 4, quaternion = 6;  // of x, x', y, y', angle, angle'; x, x', ..., z', w, x, y, z, spin
   bodies->orientation.reserve(count * (dimension == 2 ? 1 : 4));
   for (std::size_t i = 0; i < count; ++i) {
