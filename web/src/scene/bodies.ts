@@ -2,17 +2,25 @@
 import * as three from "three";
 import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Bodies } from "../protocol";
+import { spring, springPoints, type Point } from "./curves";
 import { gridStep, include, type Bounds } from "./fit";
 import { Polyline } from "./polyline";
 import { Spheres } from "./spheres";
 
 export const radiusOf = (bodies: Bodies) => (index: number): number => (typeof bodies.radius === "number" ? bodies.radius : (bodies.radius[index] ?? bodies.radius[0] ?? 1));
 
-/** The box that six walls along the axes make: drawn by its edges, since six planes would hide what is in it. */
-export function boxOfWalls(walls: Bodies["walls"]): { lower: number[]; upper: number[] } | null {
-  const lower = [NaN, NaN, NaN];
-  const upper = [NaN, NaN, NaN];
-  for (const { normal, offset } of walls) {
+/** So small a ball, in pixels of its radius, can still be seen; of many each is less. */
+export const leastRadius = (count: number): number => (count <= 30 ? 6 : count <= 300 ? 3 : 1);
+
+/**
+ * The box that walls along all axes make: four in the plane, a table with its edge; six in space, drawn by their edges,
+ * since planes would hide what is in it.
+ */
+export function boxOfWalls(walls: Bodies["walls"], dimension: 2 | 3): { lower: number[]; upper: number[] } | null {
+  const lower = Array<number>(dimension).fill(NaN);
+  const upper = Array<number>(dimension).fill(NaN);
+  for (const { normal, offset, thin } of walls) {
+    if (thin) return null;
     const axis = normal.findIndex((part) => part !== 0);
     if (axis < 0 || normal.some((part, index) => index !== axis && part !== 0)) return null;
     const place = offset / normal[axis]!;
@@ -22,10 +30,24 @@ export function boxOfWalls(walls: Bodies["walls"]): { lower: number[]; upper: nu
   return [...lower, ...upper].every(Number.isFinite) ? { lower, upper } : null;
 }
 
+type SpringEnds = NonNullable<Bodies["springs"]>[number];
+
+interface ShownSpring {
+  ends: SpringEnds;
+  coil: Polyline;
+  width: number;
+}
+
+/** Of more springs, as in a cloth, coils would hide what they hold. */
+const mostSprings = 60;
+const coilTurns = 9;
+const coilPoints = new Float32Array(3 * springPoints(coilTurns));
+
 export class BodiesView {
   readonly group = new three.Group();
   readonly spheres: Spheres;
   private readonly lines: Polyline[] = [];
+  private readonly springs: ShownSpring[];
   private readonly surfaces: { geometry: three.BufferGeometry; material: three.Material }[] = [];
 
   constructor(
@@ -35,7 +57,7 @@ export class BodiesView {
     private readonly size: number,
   ) {
     const flat = bodies.dimension === 2;
-    this.spheres = new Spheres(bodies.count, { flat, opacity: ghost ? 0.4 : 1, least: 1, order: ghost ? -5 : 4.5 });
+    this.spheres = new Spheres(bodies.count, { flat, opacity: ghost ? 0.4 : 1, least: leastRadius(bodies.count), order: ghost ? -5 : 4.5 });
     const radius = radiusOf(bodies);
     for (let i = 0; i < bodies.count; ++i) {
       this.spheres.place(i, 0, 0, 0, radius(i));
@@ -45,19 +67,39 @@ export class BodiesView {
     this.group.add(this.spheres.object);
     const line = theme === "light" ? "#5c6b7a" : "#9aa8b5";
     for (const { lower, upper } of ghost ? [] : bodies.containers) this.outline(lower, upper, line, flat);
-    const box = flat ? null : boxOfWalls(bodies.walls);
-    if (box && !ghost) this.outline(box.lower, box.upper, line, false);
-    for (const { normal, offset } of ghost || box ? [] : bodies.walls) this.wall(normal, offset, line, flat);
+    const box = boxOfWalls(bodies.walls, bodies.dimension);
+    if (box && !ghost) this.outline(box.lower, box.upper, line, flat);
+    for (const { normal, offset, thin } of ghost || box ? [] : bodies.walls) this.wall(normal, offset, line, flat, thin ?? false);
+    this.springs = (ghost || (bodies.springs?.length ?? 0) > mostSprings ? [] : (bodies.springs ?? [])).map((ends) => {
+      const coil = new Polyline({ color: line, width: 2, flat, order: 3 });
+      this.lines.push(coil);
+      this.group.add(coil.object);
+      return { ends, coil, width: NaN };
+    });
   }
 
   update(positions: Float32Array, orientations: Float32Array | null): void {
     this.spheres.placeAll(positions, this.bodies.dimension);
     this.spheres.turnAll(orientations, this.bodies.dimension);
+    for (const each of this.springs) this.stretch(each);
+  }
+
+  private stretch(shown: ShownSpring): void {
+    const { a, b, point } = shown.ends;
+    const { places } = this.spheres;
+    const placeOf = (index: number): Point => [places[3 * index]!, places[3 * index + 1]!, places[3 * index + 2]!];
+    const from = placeOf(a);
+    const to: Point = b !== null ? placeOf(b) : [point?.[0] ?? 0, point?.[1] ?? 0, point?.[2] ?? 0];
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+    if (Number.isNaN(shown.width) && length > 0) shown.width = Math.min(0.12 * length, radiusOf(this.bodies)(a));
+    if (!Number.isFinite(length + shown.width)) return;
+    spring(coilPoints, from, to, coilTurns, shown.width, this.bodies.dimension === 2);
+    shown.coil.set(coilPoints, coilPoints.length / 3);
   }
 
   /** Containers belong into the picture whole. */
   includeContainers(bounds: Bounds): void {
-    const box = this.bodies.dimension === 3 ? boxOfWalls(this.bodies.walls) : null;
+    const box = boxOfWalls(this.bodies.walls, this.bodies.dimension);
     for (const { lower, upper } of box ? [box, ...this.bodies.containers] : this.bodies.containers) {
       include(bounds, lower[0]!, lower[1]!, lower[2] ?? 0);
       include(bounds, upper[0]!, upper[1]!, upper[2] ?? 0);
@@ -90,7 +132,15 @@ export class BodiesView {
   private outline(lower: number[], upper: number[], color: string, flat: boolean): void {
     const [x0, y0, z0 = 0] = lower as [number, number, number?];
     const [x1, y1, z1 = 0] = upper as [number, number, number?];
-    if (flat) return this.add([x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0, x0, y0, 0], color, flat);
+    if (flat) {
+      this.add([x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0, x0, y0, 0], color, flat, 4);
+      const table = new three.Mesh(new three.PlaneGeometry(x1 - x0, y1 - y0), new three.MeshBasicMaterial({ color: "#009e73", transparent: true, opacity: 0.14, depthTest: false, depthWrite: false }));
+      table.position.set((x0 + x1) / 2, (y0 + y1) / 2, 0);
+      table.renderOrder = -9;
+      this.surfaces.push(table);
+      this.group.add(table);
+      return;
+    }
     // A thin line on a pale broad one: smooth also where a pixel has one sample.
     for (const [width, opacity] of [[3, 0.25], [1.2, 0.8]] as const) {
       for (const z of [z0, z1]) this.add([x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z, x0, y0, z], color, flat, width, opacity);
@@ -119,18 +169,29 @@ export class BodiesView {
   }
 
   /** The half space normal . x >= offset is free. */
-  private wall(normal: number[], offset: number, color: string, flat: boolean): void {
+  private wall(normal: number[], offset: number, color: string, flat: boolean, thin: boolean): void {
     const length = Math.hypot(...normal);
     const n = normal.map((part) => part / length);
     const foot = n.map((part) => (part * offset) / length);
     if (flat) {
       const reach = 1000 * this.size;
+      if (!thin) this.behind(n, foot, reach, color);
       this.add([foot[0]! - n[1]! * reach, foot[1]! + n[0]! * reach, 0, foot[0]! + n[1]! * reach, foot[1]! - n[0]! * reach, 0], color, flat);
       return;
     }
     const mesh = new three.Mesh(new three.PlaneGeometry(3 * this.size, 3 * this.size), new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.12, side: three.DoubleSide, depthWrite: false }));
     mesh.position.set(foot[0]!, foot[1]!, foot[2]!);
     mesh.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), new three.Vector3(n[0], n[1], n[2]));
+    this.surfaces.push(mesh);
+    this.group.add(mesh);
+  }
+
+  /** What is behind a wall is solid. */
+  private behind(n: readonly number[], foot: readonly number[], reach: number, color: string): void {
+    const mesh = new three.Mesh(new three.PlaneGeometry(2 * reach, reach), new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.16, depthTest: false, depthWrite: false, side: three.DoubleSide }));
+    mesh.position.set(foot[0]! - (n[0]! * reach) / 2, foot[1]! - (n[1]! * reach) / 2, 0);
+    mesh.rotation.z = Math.atan2(-n[0]!, n[1]!);
+    mesh.renderOrder = -9;
     this.surfaces.push(mesh);
     this.group.add(mesh);
   }

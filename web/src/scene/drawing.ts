@@ -4,6 +4,7 @@ import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Item } from "../protocol";
 import { spring, springPoints, rope, ropePoints, Trail, type Point } from "./curves";
 import { numberOf, placeOf, pointOf } from "./fit";
+import { leastRadius } from "./bodies";
 import { Polyline } from "./polyline";
 import { Spheres } from "./spheres";
 
@@ -54,6 +55,9 @@ export function itemColors(items: readonly Item[], theme: Theme): string[] {
   });
 }
 
+/** A bar or a string as broad as the model says ends as it is; others end in a dot. */
+const hasJoints = (item: Item): boolean => item.shape === "spring" || ((item.shape === "rod" || item.shape === "rope") && placeOf(item, "width") < 0);
+
 export class Drawing {
   readonly group = new three.Group();
   readonly trails: Trail[] = [];
@@ -75,10 +79,10 @@ export class Drawing {
   ) {
     const colors = itemColors(items, theme);
     items.forEach((item, index) => item.shape === "ball" && this.ballItems.push(index));
-    this.spheres = new Spheres(this.ballItems.length, { flat, opacity: ghost ? 0.45 : 1, order: this.order("ball") });
+    this.spheres = new Spheres(this.ballItems.length, { flat, opacity: ghost ? 0.45 : 1, least: leastRadius(this.ballItems.length), order: this.order("ball") });
     this.ballItems.forEach((index, at) => this.spheres.tint(at, channels(colors[index]!)));
     if (this.ballItems.length > 0) this.group.add(this.spheres.object);
-    items.forEach((item, index) => (item.shape === "spring" || item.shape === "rod" || item.shape === "rope") && this.jointItems.push(index));
+    items.forEach((item, index) => hasJoints(item) && this.jointItems.push(index));
     this.joints = new Spheres(2 * this.jointItems.length, { flat, opacity: ghost ? 0.4 : 1, least: 4, order: this.order("rod") + 0.5 });
     this.jointItems.forEach((index, at) => [2 * at, 2 * at + 1].forEach((joint) => this.joints.tint(joint, channels(colors[index]!))));
     if (this.jointItems.length > 0) this.group.add(this.joints.object);
@@ -291,7 +295,7 @@ export class Drawing {
     this.disposed.push(mesh.geometry, mesh.material);
     return {
       update: (scene, _t, size) => {
-        mesh.position.z = numberOf(item, scene, "at", 0);
+        mesh.position.z = numberOf(item, scene, "height", 0);
         mesh.scale.setScalar(2 * size);
       },
     };

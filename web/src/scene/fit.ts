@@ -71,7 +71,7 @@ export function boundsOfItems(items: readonly Item[], scene: Float32Array, up: 1
   // A floor is as wide as the picture; its height belongs into it, if anything stands there.
   for (const item of items) {
     if (item.shape !== "floor" || isEmpty(bounds)) continue;
-    const height = numberOf(item, scene, "at", 0);
+    const height = numberOf(item, scene, "height", 0);
     bounds.lower[up] = Math.min(bounds.lower[up], height);
     bounds.upper[up] = Math.max(bounds.upper[up], height);
   }

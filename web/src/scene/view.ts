@@ -11,6 +11,7 @@ import { drawGrid } from "./grid";
 import { Hand, type Thing } from "./hand";
 import { Labels } from "./labels";
 import { Stage } from "./stage";
+import { Vectors } from "./vectors";
 
 /** Place, velocity, spin, and what does not change last. */
 function bodyOrder(names: string[]): string[] {
@@ -28,6 +29,7 @@ export class SceneView {
   gridShown = true;
   private readonly grid = make("canvas", { class: "grid", "aria-hidden": "true" });
   private readonly labels = new Labels();
+  private readonly vectors = new Vectors();
   private readonly card = make("div", { class: "card", role: "status", hidden: true });
   private readonly ring = make("div", { class: "ring", hidden: true });
   private drawing: Drawing | null = null;
@@ -54,7 +56,8 @@ export class SceneView {
     this.stage = new Stage(this.element, () => this.beforeDrawing(), moved);
     const { surface } = this.stage;
     surface.element.setAttribute("role", "img");
-    this.element.append(surface.element, this.ring, this.labels.element, this.card);
+    this.element.append(surface.element, this.ring, this.labels.element, this.card, this.vectors.legend);
+    this.stage.scene.add(this.vectors.group);
     this.hand = new Hand({
       session,
       stage: this.stage,
@@ -131,6 +134,7 @@ export class SceneView {
     this.ghostTrails = ghostTrails;
     this.drawing = new Drawing(model.drawing, this.theme, this.stage.isFlat, false, trails);
     this.stage.scene.add(this.drawing.group);
+    this.vectors.build(model, this.theme, this.stage.isFlat);
     this.labels.build(model.drawing, itemColors(model.drawing, this.theme));
   }
 
@@ -163,7 +167,7 @@ export class SceneView {
     if (frame.ghostScene) union(bounds, boundsOfItems(model.drawing, frame.ghostScene, this.stage.isFlat ? 1 : 2));
     this.interest.see(bounds);
     const floor = model.drawing.find((item) => item.shape === "floor");
-    this.stage.floor = floor ? numberOf(floor, frame.scene, "at", 0) : null;
+    this.stage.floor = floor ? numberOf(floor, frame.scene, "height", 0) : null;
     if (this.firstFrame && this.stage.automatic) this.stage.approach(this.interest.wanted(), 1);
     this.firstFrame = false;
     const size = this.stage.seenHeight;
@@ -176,8 +180,18 @@ export class SceneView {
       }
       this.ghost.update(frame.ghostScene, frame.t, size, paths(frame.ghostPaths));
     }
+    this.vectors.update(model, frame, this.session.state?.mode ?? null, size);
     if (this.selected) this.tellItem();
     this.stage.invalidate();
+  }
+
+  /** Arrows for velocity and acceleration, or none. */
+  toggleVectors(): boolean {
+    this.vectors.shown = !this.vectors.shown;
+    const { model, frame } = this.session;
+    if (model && frame) this.vectors.update(model, frame, this.session.state?.mode ?? null, this.stage.seenHeight);
+    this.stage.invalidate();
+    return this.vectors.shown;
   }
 
   /** The view of the bodies, made anew where there is none of as many. */
@@ -191,7 +205,9 @@ export class SceneView {
       }
       const seen = boundsOfBodies(positions, bodies.dimension, radiusOf(bodies));
       const size = Math.max(1, ...[0, 1, 2].map((axis) => seen.upper[axis]! - seen.lower[axis]!).filter(Number.isFinite));
-      view = new BodiesView({ ...bodies, count }, this.theme, ghost, size);
+      // Where the drawing connects things itself the world's springs are not shown once more.
+      const connected = this.session.model?.drawing.some((item) => item.numbers["to"] !== undefined && item.shape !== "arrow") ?? false;
+      view = new BodiesView({ ...bodies, count, springs: connected ? [] : (bodies.springs ?? []) }, this.theme, ghost, size);
       this.stage.scene.add(view.group);
     }
     view.update(positions, orientations);
@@ -242,7 +258,7 @@ export class SceneView {
     const { stage, grid } = this;
     const floors = model.drawing
       .filter((item) => item.shape === "floor")
-      .map((item) => ({ height: numberOf(item, frame.scene, "at", 0), color: item.color ?? null }));
+      .map((item) => ({ height: numberOf(item, frame.scene, "height", 0), color: item.color ?? null }));
     const { x, y } = stage.target;
     const height = stage.seenHeight;
     const drawn = [x, y, height, stage.width, stage.height, window.devicePixelRatio, document.documentElement.className, this.theme, ...floors.map((floor) => floor.height)].join();
