@@ -10,7 +10,7 @@ import type { Item } from "../../src/protocol";
 const item = (shape: Item["shape"], numbers: Item["numbers"]): Item => ({ shape, numbers, drag: false });
 
 test("the bounds hold balls with their radius, boxes, both ends of springs, and the floor", () => {
-  const items = [item("floor", { at: [0] }), item("ball", { at: [1, 2], radius: 3 }), item("spring", { at: [4, 0], to: [1, 2] })];
+  const items = [item("floor", { height: 0 }), item("ball", { at: [1, 2], radius: 3 }), item("spring", { at: [4, 0], to: [1, 2] })];
   const bounds = boundsOfItems(items, Float32Array.of(0, 5, 10, 1, -7));
   expect(bounds.lower.slice(0, 2)).toEqual([-7, 0]);
   expect(bounds.upper.slice(0, 2)).toEqual([6, 11]);
@@ -86,7 +86,7 @@ test("a few balls have colours of their own, many have one, a trail has its ball
 
 test("six walls along the axes are a box, others are not", () => {
   const walls = [0, 1, 2].flatMap((axis) => [1, -1].map((sign) => ({ normal: [0, 1, 2].map((each) => (each === axis ? sign : 0)), offset: -2 })));
-  expect(boxOfWalls(walls)).toEqual({ lower: [-2, -2, -2], upper: [2, 2, 2] });
-  expect(boxOfWalls(walls.slice(1))).toBeNull();
-  expect(boxOfWalls([...walls, { normal: [1, 1, 0], offset: 0 }])).toBeNull();
+  expect(boxOfWalls(walls, 3)).toEqual({ lower: [-2, -2, -2], upper: [2, 2, 2] });
+  expect(boxOfWalls(walls.slice(1), 3)).toBeNull();
+  expect(boxOfWalls([...walls, { normal: [1, 1, 0], offset: 0 }], 3)).toBeNull();
 });
