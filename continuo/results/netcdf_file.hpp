@@ -79,9 +79,10 @@ class NetcdfFile {
   [[nodiscard]] const Status& status() const { return out_.status(); }
   [[nodiscard]] std::string present_name() const { return out_.present_name(); }
   /// @}
-  /// Where the rows begin, and how many there are: each is the numbers of its columns, in the order of the variables,
-  /// as bytes from the highest on.
+  /// The byte where the rows begin: each is the numbers of its columns, in the order of the variables, as bytes from
+  /// the highest on.
   [[nodiscard]] std::uint64_t first_row() const { return first_row_; }
+  /// Rows so far.
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
 
  private:

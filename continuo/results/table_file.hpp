@@ -41,10 +41,14 @@ struct TableHead {
 /// A table on its way to the disk.
 class TableFile {
  public:
+  /// Begins the table. What fails, here or later, is in the status.
   TableFile(const std::string& path, TableHead head);
   ~TableFile();
+  /// Takes over a table that has begun.
+  /// @{
   TableFile(TableFile&&) noexcept;
   TableFile& operator=(TableFile&&) noexcept;
+  /// @}
 
   /// A number for each column; behind them there may be more, for the layout of a netCDF file.
   void row(std::span<const double> values);

@@ -8,19 +8,13 @@ namespace continuo::runs {
 
 model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
                      const RunRequest& request) {
-  return run(program, experiment, request, {});
-}
-
-model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                     const RunRequest& request, const model::OnRow& on_row) {
   const Solver solver = kind_of(program->model).solver;
   Log* const log = request.log;
-  if (solver == Solver::world) return worlds::simulate_world(program, experiment, log ? log->world() : nullptr, on_row);
+  if (solver == Solver::world)
+    return worlds::simulate_world(program, experiment, log ? log->world() : nullptr, request.on_row);
   if (solver == Solver::collocation && !request.from_start)
     return boundary::simulate_boundary(program, experiment, request.boundary);
-  if (log && log->integration() && solver == Solver::integration)
-    return simulate_recorded(program, experiment, *log->integration(), on_row);
-  return model::simulate(program, experiment, on_row);
+  return model::simulate(program, experiment, {.on_row = request.on_row, .log = log ? log->integration() : nullptr});
 }
 
 std::optional<model::Plan> plan(const model::Model& model, const model::Experiment& experiment,

@@ -18,16 +18,13 @@ struct RunRequest {
   boundary::BoundaryRequest boundary{};  // which solution, and how it is searched for
   Log* log = nullptr;                    // in which the run is recorded as it goes
   bool from_start = false;               // conditions at several times are refused (E321)
+  model::OnRow on_row{};                 // is handed the rows as they come; those of a boundary-value problem come all
+                                         // at once, and stand in the run alone
 };
 
 /// A run, or why there is none.
 [[nodiscard]] model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program,
                                    const model::Experiment& experiment = {}, const RunRequest& request = {});
-/// The same with its rows handed over while it goes on, as by model::simulate. A solution of conditions at several
-/// times is known all at once: its rows are not handed over, and stand in the run.
-[[nodiscard]] model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program,
-                                   const model::Experiment& experiment, const RunRequest& request,
-                                   const model::OnRow& on_row);
 
 /// The plan of its run, or nothing where `problems` has the reason: E33x, E34x.
 [[nodiscard]] std::optional<model::Plan> plan(const model::Model& model, const model::Experiment& experiment,

@@ -3,7 +3,7 @@
 //
 //   std::ofstream file("orbit.run", std::ios::binary);
 //   IntegrationLog log(file, {.file = "orbit.sim", .text = text});
-//   simulate_recorded(program, experiment, log);
+//   simulate(program, experiment, {.log = &log});
 //   const Result<IntegrationRecording> recording = IntegrationRecording::read(bytes_of_the_file);
 //   if (!recording) std::cerr << describe(recording.status());
 //   replay_integration(program, *recording);                            // the same run, without a step
@@ -78,10 +78,6 @@ struct IntegrationRecording {
   /// How far the run has come.
   [[nodiscard]] double last_time() const { return end ? end->end.outcome.t : checkpoints.back().t; }
 };
-
-/// As simulate, recorded while it advances. Where Experiment::keep_rows is false, the recording has no rows.
-[[nodiscard]] Simulated simulate_recorded(const std::shared_ptr<const ModelProgram>& program,
-                                          const Experiment& experiment, IntegrationLog& log, const OnRow& on_row = {});
 
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).

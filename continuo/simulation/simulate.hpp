@@ -18,7 +18,9 @@
 
 namespace continuo::model {
 
-struct ModelProgram;  // simulation/program/model_program.hpp
+struct ModelProgram;   // simulation/program/model_program.hpp
+class MotionWatcher;   // simulation/motion_watcher.hpp
+class IntegrationLog;  // simulation/integration_recording.hpp
 
 /// A run, or why there is none. A run that failed on the way is a run: its outcome says how it ended, and
 /// `diagnostics` holds the same as an error with its code. Warnings may stand beside a good run.
@@ -35,10 +37,16 @@ struct Simulated {
 [[nodiscard]] Simulated simulate(const Model& model, const Experiment& experiment = {});
 /// The same for a program compiled before: for many runs of one model.
 [[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
-/// The same with its rows handed over while it goes on. Where Experiment::keep_rows is false, the run itself has the
-/// first and the last one alone, and needs no memory for the others.
+/// Who follows a run while it advances; it is the same without them, to the last bit.
+struct Followers {
+  OnRow on_row{};                    // is handed the rows
+  MotionWatcher* watcher = nullptr;  // sees the motion between them; second runs, for the error, are not shown
+  IntegrationLog* log = nullptr;     // records the run, so that it can be replayed and resumed
+};
+/// Where Experiment::keep_rows is false, the run itself has the first and the last row alone, and needs no memory for
+/// the others; a log then has none.
 [[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                                 const OnRow& on_row);
+                                 const Followers& followers);
 
 /// The plan of a run with its inputs in place, or why there can be no run.
 [[nodiscard]] std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,

@@ -175,7 +175,7 @@ def live_view():
     server = subprocess.Popen([continuo, "view", "models/pendulum.sim", "--no-open", "--json"], stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)
     text = b""
-    while not text.endswith(b"}\n"):
+    while not text.endswith(b"\n}\n"):
         line = server.stdout.readline()
         if not line:
             break
@@ -286,7 +286,7 @@ def numbers_read_back():
     """The last row of the CSV, which has the shortest digits that read back, is the state of the answer."""
     rng = random.Random(7)
     for number in range(12):
-        names = rng.sample(["x", "at", "kind", "period", "t1", "\u03b8", "exit", "layout", "u", "message"], 3)
+        names = rng.sample(["x", "hash", "kind", "period", "t1", "\u03b8", "exit", "layout", "u", "message"], 3)
         lines = ["model Random"]
         for name in names:
             rates = [f"{rng.uniform(-1, 0.2):.3g}*{other}" for other in names]

@@ -89,9 +89,9 @@ TEST(BadStudies, AFileThatCannotBeWrittenIsNamed) {
     EXPECT_EQ(nowhere.exit, 1) << study;
     EXPECT_THAT(nowhere.err, HasSubstr("cannot write /no/such/folder/x.svg")) << study;
     EXPECT_EQ(nowhere.out, "") << study << " began before it looked";
-    const Result ending = folder.run(asked(study, "good.sim", "--plot x.gif"));
+    const Result ending = folder.run(asked(study, "good.sim", "--plot x.bmp"));
     EXPECT_EQ(ending.exit, 1) << study;
-    EXPECT_THAT(ending.err, HasSubstr("cannot plot to x.gif")) << study;
+    EXPECT_THAT(ending.err, HasSubstr("cannot plot to x.bmp")) << study;
   }
   for (const std::string& study : {studies[0], studies[7], studies[8], std::string("report MODEL")}) {
     const Result nowhere = folder.run(asked(study, "good.sim", "-o /no/such/folder/x"));

@@ -170,7 +170,7 @@ TEST(Interrupted, KeepsTheRowsUnderTheNameOfAnUnfinishedTable) {
     place.shell.write(name, "an older one");
     const Result result = place.shell.run(
         "run swing.sim --set n=1e9 --max-steps 1000000000 -o " + name + " --events events.csv --manifest manifest.json",
-        "timeout --signal=INT 1");
+        "timeout --signal=INT 0.4");
     EXPECT_THAT(result.exit, AnyOf(130, 124)) << result.err;
     EXPECT_THAT(result.err, HasSubstr("are in " + unfinished)) << ending;
     EXPECT_EQ(place.shell.read(name), "an older one");

@@ -34,7 +34,7 @@ TEST(Lexing, ABracketDirectlyAfterANameIsAnIndexElseAUnit) {
 
 TEST(Lexing, TwoDotsEndANumber) {
   EXPECT_THAT(kinds("0..60"), ElementsAre(Kind::number, Kind::dots, Kind::number));
-  EXPECT_THAT(kinds("0...5"), ElementsAre(Kind::number, Kind::dots, Kind::number));
+  EXPECT_THAT(kinds("0...5"), ElementsAre(Kind::number, Kind::bad, Kind::number));
 }
 
 TEST(Lexing, NumbersAreReadToTheLastBit) {

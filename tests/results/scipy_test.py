@@ -27,8 +27,10 @@ with tempfile.TemporaryDirectory() as folder:
         subprocess.run([continuo, "run", str(models / model), "-o", str(path)], check=True, stdout=subprocess.DEVNULL)
         return path
 
-    text = numpy.genfromtxt(path_of("mass_spring.sim", "csv"), delimiter=",", names=True, comments="#", deletechars="")
-    tabs = numpy.genfromtxt(path_of("mass_spring.sim", "tsv"), delimiter="\t", names=True, comments="#", deletechars="")
+    text = numpy.genfromtxt(path_of("mass_spring.sim", "csv"), delimiter=",", names=True, skip_header=1,
+                            deletechars="", replace_space=" ")
+    tabs = numpy.genfromtxt(path_of("mass_spring.sim", "tsv"), delimiter="\t", names=True, skip_header=1,
+                            deletechars="", replace_space=" ")
     matlab = scipy.io.loadmat(path_of("mass_spring.sim", "mat"))
     names = [str(name[0]) for name in matlab["column_names"][:, 0]]
     equal("names", names, list(text.dtype.names))

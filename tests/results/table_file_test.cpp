@@ -16,8 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "example.hpp"
-#include <continuo/results/matlab_file.hpp>
 #include <continuo/results/table_file.hpp>
+#include <continuo/results/tables/matlab_file.hpp>
 
 namespace continuo::results {
 namespace {

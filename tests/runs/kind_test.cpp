@@ -35,7 +35,7 @@ TEST(Kind, OfEquationsIsIntegratedFromTheStart) {
   EXPECT_EQ(kind.solver, Solver::integration);
   EXPECT_TRUE(kind.has_start && kind.has_exact_derivatives && kind.has_absolute_tolerances);
   EXPECT_TRUE(kind.has_rows_at_any_time);
-  EXPECT_FALSE(kind.can_be_recorded);
+  EXPECT_TRUE(kind.can_be_recorded);
   EXPECT_EQ(kind.cost, "evaluations");
   EXPECT_FALSE(no_study_of_equations(model_of(decay)));
 }
@@ -43,7 +43,7 @@ TEST(Kind, OfEquationsIsIntegratedFromTheStart) {
 TEST(Kind, OfConditionsAtBothEndsHasNoStart) {
   const Kind kind = kind_of(model_of(both_ends));
   EXPECT_EQ(kind.solver, Solver::collocation);
-  EXPECT_FALSE(kind.has_start);
+  EXPECT_FALSE(kind.has_start || kind.can_be_recorded);
   EXPECT_TRUE(kind.has_exact_derivatives);
 }
 

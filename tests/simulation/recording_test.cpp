@@ -195,7 +195,7 @@ Recorded record(const std::shared_ptr<const ModelProgram>& program, const Experi
   RunHead head;
   head.experiment = experiment;
   IntegrationLog log(file, head, checkpoints);
-  Simulated simulated = simulate_recorded(program, experiment, log);
+  Simulated simulated = simulate(program, experiment, {.log = &log});
   return {std::move(simulated), bytes_of(file.str())};
 }
 
@@ -273,12 +273,12 @@ TEST_P(RecordingByMethod, ResumesToTheSameBits) {
   }
 }
 
-std::vector<std::string> names_of_methods() {
+std::vector<std::string> catalogued_methods() {
   std::vector<std::string> names;
   for (const MethodInfo& method : method_catalogue()) names.emplace_back(method.name);
   return names;
 }
-INSTANTIATE_TEST_SUITE_P(Methods, RecordingByMethod, testing::ValuesIn(names_of_methods()),
+INSTANTIATE_TEST_SUITE_P(Methods, RecordingByMethod, testing::ValuesIn(catalogued_methods()),
                          [](const auto& name) { return name.param; });
 
 TEST(Recording, ResumesBeyondItsEndAsTheLongerRunGoes) {

@@ -91,6 +91,7 @@ class Files {
 
  private:
   void add(const FileOption& option, const std::string& path) {
+    if (option.names_file && !option.names_file(path)) return;
     NamedFile file{.path = path, .role = name_of(*option.option), .place = results::place_of(path)};
     if (option.use == Use::read) {
       if (path == "-") file.place = results::place_of_open(STDIN_FILENO);
@@ -170,8 +171,9 @@ class Files {
 CLI::Option* reads_file(CLI::App& verb, CLI::Option* option, FilesOf files_of) {
   return declare(verb, {.use = Use::read, .files_of = std::move(files_of)}, option);
 }
-CLI::Option* writes_file(CLI::App& verb, CLI::Option* option, std::vector<std::string_view> endings) {
-  return declare(verb, {.use = Use::written, .endings = std::move(endings)}, option);
+CLI::Option* writes_file(CLI::App& verb, CLI::Option* option, std::vector<std::string_view> endings,
+                         bool (*names_file)(const std::string&)) {
+  return declare(verb, {.use = Use::written, .endings = std::move(endings), .names_file = names_file}, option);
 }
 CLI::Option* writes_table(CLI::App& verb, CLI::Option* option) {
   return declare(verb, {.use = Use::written_as_table}, option);

@@ -22,17 +22,19 @@ struct FileOption {
   enum class Use { read, written, written_as_table, written_as_pictures };  // the last: a folder, or a film
   const CLI::Option* option = nullptr;
   Use use = Use::read;
-  FilesOf files_of{};                       // of a file that is read
-  std::vector<std::string_view> endings{};  // that the name may have; empty for any
-  std::string beside{};                     // what a file written beside it has behind its name,
-  const CLI::Option* instead_of = nullptr;  // unless this option names that one
+  FilesOf files_of{};                                // of a file that is read
+  std::vector<std::string_view> endings{};           // that the name may have; empty for any
+  bool (*names_file)(const std::string&) = nullptr;  // of an option that takes other texts as well
+  std::string beside{};                              // what a file written beside it has behind its name,
+  const CLI::Option* instead_of = nullptr;           // unless this option names that one
 };
 
 /// The option names a file that is read, or several. "-" is standard input.
 CLI::Option* reads_file(CLI::App& verb, CLI::Option* option, FilesOf files_of = {});
 /// The option names a file that is written; "-" is standard output. Its name has one of the endings where there are
-/// any.
-CLI::Option* writes_file(CLI::App& verb, CLI::Option* option, std::vector<std::string_view> endings = {});
+/// any. `names_file` tells names of files from other texts that the option takes.
+CLI::Option* writes_file(CLI::App& verb, CLI::Option* option, std::vector<std::string_view> endings = {},
+                         bool (*names_file)(const std::string&) = nullptr);
 /// A table, whose format is said by its ending (results/table_file.hpp).
 CLI::Option* writes_table(CLI::App& verb, CLI::Option* option);
 /// A folder of pictures, or a film.

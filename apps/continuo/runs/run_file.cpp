@@ -58,6 +58,19 @@ std::optional<runs::Recording> read_run(const std::string& path) {
   return std::nullopt;
 }
 
+bool has_changed(const model::RunHead& head, const model::ModelProgram& program, const std::string& path) {
+  if (head.version != CONTINUO_VERSION) {
+    say(fmt::format("{} was recorded by Continuo {}, this is {}: its steps may differ; run the model again", path,
+                    head.version, CONTINUO_VERSION));
+    return true;
+  }
+  if (head.data != checksum_of_tables(program)) {
+    say(fmt::format("{}: a table that {} reads has changed since: run the model again", path, head.file));
+    return true;
+  }
+  return false;
+}
+
 std::vector<std::string> files_of_recording(const std::string& path) {
   constexpr std::size_t beginning = std::size_t{16} << 20;  // bytes; the text of the model is in the first block
   std::ifstream file(path, std::ios::binary);

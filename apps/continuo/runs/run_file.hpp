@@ -39,6 +39,10 @@ class RunFile {
 /// What the model in a recording reads, which a replay reads again.
 std::vector<std::string> files_of_recording(const std::string& path);
 
+/// Whether the recorded run would go on to other bits than it was recorded with, as by another version of the program
+/// or with other tables: said, and refused.
+bool has_changed(const model::RunHead& head, const model::ModelProgram& program, const std::string& path);
+
 /// Says why there is none.
 std::optional<runs::Recording> read_run(const std::string& path);
 

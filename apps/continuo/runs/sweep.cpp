@@ -14,8 +14,9 @@
 #include <fmt/format.h>
 
 #include <continuo/language/load.hpp>
+#include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/runs/run.hpp>
+#include <continuo/runs/watched_run.hpp>
 
 namespace continuo::app {
 namespace {
@@ -159,7 +160,8 @@ model::Overrides parameters_of(const Sweep& sweep, std::size_t member, const Pre
   return parameters;
 }
 
-void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, SweepMember& member) {
+void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, const results::MotionCurves* curves,
+                SweepMember& member) {
   model::Experiment experiment = base.experiment;
   experiment.progress = nullptr;
   bool decides_size = false;
@@ -182,7 +184,18 @@ void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, Swe
     for (const std::size_t i : states_named(model, sweep.axes[a].name))
       experiment.initial[model.states[i].column] = sweep.value(index, a);
   }
-  member.simulated = runs::run(member.program, experiment);
+  if (!curves) {
+    member.simulated = runs::run(member.program, experiment);
+    return;
+  }
+  const auto begun = [&] {
+    return decides_size ? std::make_unique<results::MotionCurves>(member.program, results::plot_requests(model))
+                        : std::make_unique<results::MotionCurves>(*curves);
+  };
+  member.curves = begun();
+  runs::WatchedRun watched = runs::run(member.program, experiment, {}, *member.curves);
+  if (!watched.is_shown) member.curves = begun();  // the picture shows the rows
+  member.simulated = std::move(watched.simulated);
 }
 
 }  // namespace
@@ -240,13 +253,14 @@ std::optional<Sweep> read_sweep(const std::vector<SweepText>& texts, const Prepa
   return std::nullopt;
 }
 
-std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const std::function<void(double)>& watch) {
+std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const results::MotionCurves* curves,
+                                   const std::function<void(double)>& watch) {
   std::vector<SweepMember> members(sweep.size());
   std::atomic<std::size_t> next = 0, done_so_far = 0;
   std::mutex watching;
   const auto work = [&] {
     for (std::size_t i = next++; i < members.size() && !interrupt_flag(); i = next++) {
-      run_member(sweep, i, base, members[i]);
+      run_member(sweep, i, base, curves, members[i]);
       ++done_so_far;
       if (!watch) continue;
       const std::scoped_lock lock(watching);

@@ -6,12 +6,14 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <apps/continuo/options/experiment_options.hpp>
 
+#include <continuo/results/motion_curves.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -52,9 +54,12 @@ struct SweepMember {
   bool begun = false;
   std::shared_ptr<const model::ModelProgram> program{};
   model::Simulated simulated{};
+  std::unique_ptr<results::MotionCurves> curves{};  // of its picture, where one is wanted
 };
 /// Runs all members, as many at a time as there are cores; each is the run that its settings alone would give. After
-/// Ctrl-C those that have ended are there. `watch` gets the part that is done.
-std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const std::function<void(double)>& watch);
+/// Ctrl-C those that have ended are there. `curves`: what is to be drawn of each, or null. `watch` gets the part that
+/// is done.
+std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const results::MotionCurves* curves,
+                                   const std::function<void(double)>& watch);
 
 }  // namespace continuo::app

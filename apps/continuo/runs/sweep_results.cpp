@@ -89,7 +89,8 @@ bool have_one_table(const Members& members) {
 }
 
 Status write_rows(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
-  results::TableHead head{.manifest = hash};
+  results::TableHead head;
+  head.manifest = hash;
   for (std::string& name : columns_of(sweep)) head.columns.push_back({.name = std::move(name), .unit = {}});
   const auto& columns = first_run(members)->motion.columns;
   head.columns.insert(head.columns.end(), columns.begin(), columns.end());
@@ -137,8 +138,8 @@ Status write_events(const Sweep& sweep, const Members& members, const std::strin
 results::Figure figure_of(const Sweep& sweep, const Members& members) {
   results::Figure figure;
   for (std::size_t m = 0; m < members.size(); ++m) {
-    if (!members[m].simulated.run) continue;
-    results::Figure one = results::figure_of(*members[m].program, *members[m].simulated.run);
+    if (!members[m].simulated.run || !members[m].curves) continue;
+    results::Figure one = results::figure_of(*members[m].program, *members[m].simulated.run, *members[m].curves);
     if (figure.title.empty()) figure.title = one.title;
     for (std::size_t p = 0; p < one.panels.size(); ++p) {
       results::Panel& panel = one.panels[p];

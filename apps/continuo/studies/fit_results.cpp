@@ -126,10 +126,8 @@ std::string statistics_text(const studies::FitStatistics& statistics) {
   if (statistics.sum_of_squares) parts.push_back(fmt::format("sum of squares {:.4g}", *statistics.sum_of_squares));
   parts.push_back(fmt::format("{:.4g} degrees of freedom", statistics.degrees));
   if (statistics.chi_squared)
-    parts.push_back(
-        fmt::format("chi squared {:.4g} (p = {:.2g})", *statistics.chi_squared, *statistics.chi_squared_p));
-  if (statistics.aic)
-    parts.push_back(fmt::format("AIC {:.1f}, BIC {:.1f}", *statistics.aic, *statistics.bic));
+    parts.push_back(fmt::format("chi squared {:.4g} (p = {:.2g})", *statistics.chi_squared, *statistics.chi_squared_p));
+  if (statistics.aic) parts.push_back(fmt::format("AIC {:.1f}, BIC {:.1f}", *statistics.aic, *statistics.bic));
   return fmt::format("{}\n", fmt::join(parts, ", "));
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <continuo/results/figure.hpp>
 #include <continuo/studies/fit.hpp>
 

@@ -71,7 +71,8 @@ class Reader {
     if (cells.size() <= std::max(x_column_, y_column_)) {
       return fail(fmt::format("{} columns, but column {} is needed", cells.size(), std::max(x_column_, y_column_) + 1));
     }
-    const auto x = number_in(cells[x_column_]), y = number_in(cells[y_column_]);
+    const auto x = number_in(cells[x_column_]);
+    const auto y = x ? number_in(cells[y_column_]) : std::nullopt;  // one message is enough
     if (!x || !y) return;
     if (!std::isfinite(*x) || !std::isfinite(*y)) return fail("a number is not finite");
     if (!xs_.empty() && !(*x > xs_.back())) {

@@ -121,7 +121,7 @@ bool renew_recordings(const std::filesystem::path& folder) {
     head.file = std::string(each.name) + ".sim";
     head.text = each.text;
     model::IntegrationLog log(file, head, 3);
-    if (!model::simulate_recorded(program, {}, log).run) return false;
+    if (!model::simulate(program, {}, {.log = &log}).run) return false;
     if (!write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))))) return false;
   }
   return true;

@@ -38,7 +38,7 @@ test("an error of the run pauses, says why and offers a way out", async (t) => {
   await picture(tab, "message");
 });
 
-test("a plot has a logarithmic axis where it is asked for, and an audience sees scene and plots alone", async (t) => {
+test("a plot has a logarithmic axis where it is asked for, and an audience sees the scene alone", async (t) => {
   const { url } = await serve(t, model("euler_energy"), "--speed", "4");
   const tab = await open(t, url);
   await until(tab, ({ t: time }) => time > 4, "it plays");
@@ -52,7 +52,8 @@ test("a plot has a logarithmic axis where it is asked for, and an audience sees 
   await picture(tab, "logarithmic");
   await tab.keyboard.press("s");
   await tab.locator(".controls").waitFor({ state: "hidden" });
-  assert.ok(await tab.locator(".plots").isVisible());
+  assert.ok(await tab.locator(".scene").isVisible());
+  assert.ok(await tab.locator(".plots").isHidden());
   await picture(tab, "presented");
   await tab.keyboard.press("s");
   await tab.locator(".controls").waitFor();

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <continuo/results/families.hpp>
-#include <continuo/results/matlab_file.hpp>
+#include <continuo/results/tables/matlab_file.hpp>
 
 namespace continuo::results {
 namespace {
@@ -138,7 +138,7 @@ std::string matlab_name(const std::string& name, std::vector<std::string>& taken
     const bool is_letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
     if (is_letter || (!allowed.empty() && allowed.back() != '_')) allowed += is_letter ? c : '_';
   }
-  if (primes > 0) allowed += "_" + std::string(primes - 1, 'd') + "dot";
+  if (primes > 0) allowed += fmt::format("_{}dot", std::string(primes - 1, 'd'));
   if (allowed.empty() || std::isalpha(static_cast<unsigned char>(allowed.front())) == 0) allowed.insert(0, "x_");
   if (is_word_of_matlab(allowed)) allowed += "_";
   allowed.resize(std::min(allowed.size(), longest_name));

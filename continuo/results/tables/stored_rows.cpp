@@ -3,11 +3,11 @@
 #include <array>
 #include <bit>
 
-#include <continuo/results/stored_rows.hpp>
+#include <continuo/results/tables/stored_rows.hpp>
 
 namespace continuo::results {
 namespace {
-constexpr std::size_t bytes_of_block = std::size_t{1} << 22;
+constexpr std::size_t bytes_of_block = std::size_t{1} << 20;
 }
 
 std::uint64_t StoredRows::rows_of_block() const {

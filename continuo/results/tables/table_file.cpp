@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include <continuo/results/csv_writer.hpp>
-#include <continuo/results/matlab_file.hpp>
-#include <continuo/results/stored_rows.hpp>
 #include <continuo/results/table_file.hpp>
+#include <continuo/results/tables/matlab_file.hpp>
+#include <continuo/results/tables/stored_rows.hpp>
 
 namespace continuo::results {
 

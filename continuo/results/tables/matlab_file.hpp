@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <continuo/results/output_file.hpp>
-#include <continuo/results/stored_rows.hpp>
+#include <continuo/results/tables/stored_rows.hpp>
 #include <continuo/simulation/run.hpp>
 #include <continuo/status/status.hpp>
 
