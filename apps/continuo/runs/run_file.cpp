@@ -81,7 +81,9 @@ std::vector<std::string> files_of_recording(const std::string& path) {
   const Result<runs::Recording> recording = runs::read_recording(bytes);
   if (!recording) return {};
   const model::RunHead& head = runs::head_of(*recording);
-  return files_of_text(head.file, head.text);
+  std::vector<std::string> files = files_of_text(head.file, head.text);
+  files.push_back(head.file);  // the recording has its text, and yet it is somebody's model
+  return files;
 }
 
 }  // namespace continuo::app
