@@ -192,6 +192,8 @@ TEST(FileOptions, NoOptionAtAllLosesAFile) {
       if (option.value.empty()) continue;
       for (const char* file : {"own.sim", "own.run", "force.csv"}) {
         if (!option.is_file() && file != std::string("own.sim")) continue;
+        // Who does not read the recording may write a new one in its place.
+        if (file == std::string("own.run") && command.find("own.run") == std::string::npos) continue;
         const std::string words = with(command, option.name, file);
         (void)shell.run(words, "timeout 5");
         in.expect_unchanged(words);
