@@ -85,7 +85,7 @@ class MatlabReader {
       EXPECT_EQ(data.size(), 8 * count);
       EXPECT_EQ(after, end);
       result.array.numbers.resize(count);
-      std::memcpy(result.array.numbers.data(), data.data(), data.size());
+      if (count > 0) std::memcpy(result.array.numbers.data(), data.data(), data.size());
     } else if (result.array.kind == 4) {
       const auto [data, after] = element_at(after_name, 4);
       for (std::size_t i = 0; i < data.size(); i += 2) result.array.text += data[i];
