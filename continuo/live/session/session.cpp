@@ -11,7 +11,7 @@
 #include <continuo/live/session.hpp>
 #include <continuo/live/session/messages.hpp>
 #include <continuo/live/session/planned_track.hpp>
-#include <continuo/live/session/write_file.hpp>
+#include <continuo/results/output_file.hpp>
 
 namespace continuo::live {
 
@@ -141,8 +141,12 @@ void Session::open_gallery(const std::string& name) {
 void Session::save_text(const std::string& text) {
   if (!place_.writable) return notices_.note("this view writes no files");
   if (text_.path != place_.path) return notices_.note(fmt::format("only {} is ever written", name_of(place_.path)));
-  if (const Status status = write_atomically(text_.path, text); !status)
-    return notices_.say(model::error("", {}, status.message));
+  if (const Status status = results::write_file(text_.path, text); !status) {
+    std::string message = status.message;
+    if (const std::size_t at = message.find(text_.path); at != std::string::npos)
+      message.replace(at, text_.path.size(), name_of(text_.path));
+    return notices_.say(model::error("", {}, std::move(message)));
+  }
   text_.text = text;
   audience_.hear(Topic::message, saved_json(name_of(text_.path)));
 }
