@@ -34,6 +34,8 @@
 
 namespace continuo::model {
 
+class NativeCompiler;  // symbolic/native/native_compiler.hpp
+
 /// A number that may depend on parameters, and its value with them as written. Times are in Model::time_unit.
 struct Setting {
   NodeId node;
@@ -383,6 +385,8 @@ struct Model {
   std::vector<MassMatrix> masses;            // of every mode, those that are no numbers
 
   std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
+
+  std::shared_ptr<NativeCompiler> native;  // compiles the tapes that run often; null: none is compiled
 
   /// Whether conditions are at several times.
   [[nodiscard]] bool needs_boundary_solver() const { return !boundary.empty(); }

@@ -7,6 +7,7 @@
 
 #include <continuo/results/json.hpp>
 #include <continuo/results/sha256.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
 
 namespace continuo::results {
 namespace {
@@ -29,6 +30,15 @@ Json statistics_of(const Statistics& statistics) {
     json["factorizations"] = statistics.factorizations;
     json["linear_solves"] = statistics.linear_solves;
   }
+  return json;
+}
+
+/// What computed the equations; the results are the same.
+Json native_of(const model::Model& model) {
+  if (!model.native) return nullptr;
+  const model::NativeCompiler::Report report = model.native->report();
+  Json json{{"compiled", report.compiled}, {"loaded", report.loaded}};
+  if (!report.trouble.empty()) json["trouble"] = report.trouble;
   return json;
 }
 
@@ -111,6 +121,7 @@ std::string manifest(const model::Model& model, const model::Run& run, std::stri
   Json json = plan_object(model, run.plan, version);
   json["outcome"] = outcome_of(run.outcome);
   json["statistics"] = statistics_of(run.statistics);
+  json["native"] = native_of(model);
   json["hash"] = manifest_hash(model, run.plan, run.first_state(), version);
   return text_of(json);
 }

@@ -29,7 +29,7 @@ CoupledEquations<Dim>::CoupledEquations(const model::ModelProgram& program, std:
     const auto begin = mode.derivatives.begin() + static_cast<std::ptrdiff_t>(first_);
     const std::vector<model::NodeId> nodes(begin, begin + static_cast<std::ptrdiff_t>(count_));
     all.insert(all.end(), nodes.begin(), nodes.end());
-    if (count_ > 0) rates_.emplace_back(program.tape_of(nodes), variables);
+    if (count_ > 0) rates_.emplace_back(program.busy_tape_of(nodes), variables);
   }
   const auto take = [&](const std::vector<model::ForceDescription>& loads, std::size_t components,
                         std::vector<std::size_t>& bodies, model::Evaluation& evaluation) {

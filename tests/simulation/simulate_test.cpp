@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <continuo/language/load.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/program/model_system.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::model {

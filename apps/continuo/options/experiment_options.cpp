@@ -19,6 +19,7 @@
 #include <continuo/results/measurements.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/run.hpp>
+#include <continuo/simulation/native.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -199,6 +200,11 @@ void add_model(CLI::App& verb, ExperimentOptions& options) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option(
+          "--native", options.native,
+          "Machine code for the equations, with the same results to the bit: auto (as soon as it pays), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
 void add_experiment(CLI::App& verb, ExperimentOptions& options) {
@@ -306,7 +312,15 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
       return prepared;
     }
   }
+  if (options.native != "never") {
+    const auto use = options.native == "always" ? model::NativeUse::always : model::NativeUse::automatic;
+    prepared.loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = use});
+  }
   prepared.program = model::compile(*prepared.loaded.model);
+  if (options.native == "always") {
+    if (const std::string trouble = prepared.loaded.model->native->report().trouble; !trouble.empty())
+      say(fmt::format("without machine code: {}", trouble));
+  }
   prepared.experiment = {.method = options.method,
                          .step = options.step,
                          .to = options.until,

@@ -27,6 +27,7 @@ struct ExperimentOptions {
   std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
   std::optional<double> step, until, output, max_step;
   std::optional<std::size_t> max_steps;
+  std::string native = "auto";  // "auto", "always", "never"
 
   /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
   /// rows of it are wanted makes no difference.

@@ -38,12 +38,13 @@ ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const 
   for (std::uint32_t row = 0; slides && columns.size() <= largest_full && row < columns.size(); ++row)
     for (std::uint32_t column = 0; column < columns.size(); ++column) all.push_back({row, column});
   pattern_ = SparsePattern(columns.size(), all);
+  if (pattern_.is_banded()) places_in_band_ = pattern_.places_in_band();
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     OfMode& mine = modes_.emplace_back();
     std::vector<NodeId> nodes(pattern_.entries(), own.model.graph.constant(0));
     for (const JacobianEntry& entry : entries[mode]) nodes[pattern_.find(entry.row, entry.column)] = entry.value;
-    mine.entries = Evaluation(own.tape_of(nodes), variables);
-    if (pattern_.is_banded()) mine.in_band = mine.entries.outputs_at(pattern_.places_in_band());
+    mine.entries = Evaluation(own.busy_tape_of(nodes), variables);
+    if (pattern_.is_banded()) mine.in_band = mine.entries.outputs_at(places_in_band_);
     nodes.clear();
     for (const JacobianEntry& entry : model::jacobian(own.model.graph, model.modes[mode].derivatives, time)) {
       mine.moving.push_back(entry.row);
@@ -60,7 +61,10 @@ void ModelDerivatives::jacobian_values(std::size_t mode, double t, std::span<con
 }
 
 void ModelDerivatives::jacobian_band(std::size_t mode, double t, std::span<const double> x, std::span<double> band) {
-  modes_[mode].entries(t, x, band, modes_[mode].in_band);
+  OfMode& mine = modes_[mode];
+  if (!mine.entries.is_native()) return mine.entries(t, x, band, mine.in_band);
+  mine.entries(t, x, values_);
+  for (std::size_t k = 0; k < places_in_band_.size(); ++k) band[places_in_band_[k]] = values_[k];
 }
 
 void ModelDerivatives::jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows) {

@@ -43,6 +43,7 @@ class ModelDerivatives {
   };
 
   SparsePattern pattern_;
+  std::vector<std::uint32_t> places_in_band_;  // of the entries; empty where the pattern is not banded
   std::vector<OfMode> modes_;
   std::vector<double> values_;
 };

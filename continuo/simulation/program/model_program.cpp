@@ -9,6 +9,7 @@
 #include <variant>
 
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
 
 namespace continuo::model {
 
@@ -110,7 +111,7 @@ void compile_equations(ModelProgram& program) {
   Model& model = program.model;
   for (const When& event : model.events) program.enclosed.push_back(enclosed_guard(model, event));
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
-    program.derivatives.push_back(program.tape_of(model.modes[mode].derivatives));
+    program.derivatives.push_back(program.busy_tape_of(model.modes[mode].derivatives));
     ProgramGuards guards;
     std::vector<NodeId> nodes, truths;
     for (std::size_t i = 0; i < model.events.size(); ++i) {
@@ -122,7 +123,7 @@ void compile_equations(ModelProgram& program) {
       guards.events.push_back(i);
       nodes.push_back(model.events[i].guard);
     }
-    guards.tape = program.tape_of(nodes);
+    guards.tape = program.busy_tape_of(nodes);
     guards.truths = program.tape_of(truths);
     program.guards.push_back(std::move(guards));
   }
@@ -200,6 +201,12 @@ std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes)
   std::vector<NodeId> replaced;
   for (const NodeId node : nodes) replaced.push_back(with_inputs(graph, node));
   return std::make_shared<const Tape>(graph, replaced, tape_variables(), tables);
+}
+
+std::shared_ptr<const Tape> ModelProgram::busy_tape_of(std::span<const NodeId> nodes) const {
+  std::shared_ptr<const Tape> tape = tape_of(nodes);
+  if (model.native) model.native->watch(tape);
+  return tape;
 }
 
 namespace {

@@ -82,6 +82,8 @@ struct ModelProgram {
   [[nodiscard]] NodeId with_inputs(Graph& graph, NodeId node) const;
   /// A tape of these expressions, interpolated inputs in place.
   [[nodiscard]] std::shared_ptr<const Tape> tape_of(std::span<const NodeId> nodes) const;
+  /// The same of what every step evaluates: worth machine code, where the model has a compiler.
+  [[nodiscard]] std::shared_ptr<const Tape> busy_tape_of(std::span<const NodeId> nodes) const;
 };
 
 /// Inputs with points follow them, whoever gave the points: the file of the model or a caller.

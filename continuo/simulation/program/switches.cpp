@@ -180,9 +180,9 @@ SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode) {
                                    ? g.subtract(half, g.apply(Op::absolute, g.subtract(part, half)))
                                    : one.surface);
   }
-  equations.rates = program.tape_of(equations.derivatives);
-  equations.surfaces = program.tape_of(surfaces);
-  equations.approach = program.tape_of(approach);
+  equations.rates = program.busy_tape_of(equations.derivatives);
+  equations.surfaces = program.busy_tape_of(surfaces);
+  equations.approach = program.busy_tape_of(approach);
   return equations;
 }
 

@@ -100,7 +100,7 @@ void SensitiveProgram::add_equations() {
       nodes.push_back(program_->with_inputs(graph, node));
     for (std::size_t k = 0; k < count(); ++k)
       for (std::size_t i = 0; i < n_; ++i) nodes.push_back(variation(graph, nodes[i], k));
-    rates_.push_back(own_.tape_of(nodes));
+    rates_.push_back(own_.busy_tape_of(nodes));
     surfaces_.push_back(surfaces_of(held));
   }
 }

@@ -41,6 +41,9 @@ class Table {
   /// All that `at` may give from one x to another, in their order; each holds up to the x of the next.
   [[nodiscard]] std::span<const Piece> pieces(double from, double to) const;
 
+  /// The one before the first point, then that of each point.
+  [[nodiscard]] std::span<const Piece> all_pieces() const { return pieces_; }
+
   [[nodiscard]] std::span<const double> x() const { return x_; }
   [[nodiscard]] Between between() const { return between_; }
 

@@ -15,8 +15,12 @@
 // do not wait for each other are one loop over neighbouring registers, a grid's inner points without their ends; a
 // family whose members lie apart (u[1], v[1], u[2], v[2], ...) is first copied to where they are neighbours.
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -38,6 +42,9 @@ struct TapeVariables {
   // need not lie side by side.
   std::span<const std::uint32_t> families = {};
 };
+
+/// Machine code of Tape::evaluate: the registers, the states, the outputs.
+using NativeEvaluation = void (*)(double* registers, const double* states, double* outputs);
 
 class Tape {
  public:
@@ -74,9 +81,31 @@ class Tape {
     std::size_t gathered = 0;  // operands of those that do not lie side by side
   };
   [[nodiscard]] Size size() const;
+  [[nodiscard]] std::span<const Table> tables() const { return tables_; }
+  /// Where the states lie among the registers, [begin, end).
+  [[nodiscard]] std::uint32_t states_begin() const { return states_begin_; }
+  [[nodiscard]] std::uint32_t states_end() const { return states_end_; }
+
+  /// From now on `evaluate` on doubles calls this function, also in runs that are under way in other threads. It must
+  /// compute the same bits; `code` keeps it loaded. Only the first call counts.
+  void use_native(NativeEvaluation function, std::shared_ptr<const void> code) const;
+  [[nodiscard]] bool is_native() const { return native_->function.load(std::memory_order_acquire) != nullptr; }
+  /// `notify` is called, by the thread that evaluates, when that many operations are done, and again after as many as
+  /// it returns, all counted from the beginning; 0: not again. To be set before the tape is shared by threads.
+  void notify_of_use(std::uint64_t operations, std::function<std::uint64_t(std::uint64_t)> notify) const;
+  /// Who evaluates says so, now and then. Whether anybody wants to know more.
+  bool count_use(std::uint64_t operations) const;
 
  private:
   friend class TapeCompiler;
+  friend class TapeWriter;
+  struct Native {
+    std::atomic<NativeEvaluation> function = nullptr;
+    std::shared_ptr<const void> code;
+    std::atomic<std::uint64_t> operations = 0, wanted = 0;  // done so far; when to notify, 0 never
+    std::function<std::uint64_t(std::uint64_t)> notify;
+    std::mutex mutex;
+  };
   struct Constant {
     std::uint32_t target;
     double value;
@@ -98,7 +127,8 @@ class Tape {
   std::size_t registers_ = 0, output_count_ = 0;
   std::vector<Constant> constants_;
   Program preparation_, body_;
-  std::uint32_t states_begin_ = 0;
+  std::shared_ptr<Native> native_ = std::make_shared<Native>();
+  std::uint32_t states_begin_ = 0, states_end_ = 0;
   tape::Copies copies_;                 // what lies side by side before `body_`
   std::uint32_t copied_from_ = 0;       // where they are counted from: states_begin_, if only states are copied
   bool reads_only_copies_ = false;      // of the states

@@ -156,6 +156,7 @@ class TapeCompiler {
   void copy_states(const TapeVariables& variables, std::vector<Place> copied) {
     const auto is_state = [&](std::uint32_t i) { return i >= variables.states_begin && i < variables.states_end; };
     tape_.states_begin_ = variables.states_begin;
+    tape_.states_end_ = variables.states_end;
     if (std::ranges::all_of(copied, is_state, &Place::from)) {
       tape_.copied_from_ = variables.states_begin;
       tape_.reads_only_copies_ = true;

@@ -299,12 +299,20 @@ void Tape::run(std::span<Real> registers, std::span<Real> outputs, const tape::C
 
 template <class Real>
 void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (const NativeEvaluation native = native_->function.load(std::memory_order_acquire))
+      return native(registers.data(), registers.data() + states_begin_, outputs.data());
+  }
   tape::run(copies_, registers.data() + copied_from_, registers.data());
   run(registers, outputs, many_outputs_);
 }
 
 template <class Real>
 void Tape::evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (const NativeEvaluation native = native_->function.load(std::memory_order_acquire))
+      return native(registers.data(), states.data(), outputs.data());
+  }
   evaluate(registers, states, outputs, many_outputs_);
 }
 

@@ -1,0 +1,304 @@
+// Machine code of tapes against the tapes themselves, bit by bit: random expressions, families, tables, many threads.
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <random>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <continuo/symbolic/native/c_source.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
+
+namespace continuo::model::native_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t states = 40, parameters = 5, variables = 1 + states + parameters;
+constexpr TapeVariables layout = {.variables = variables,
+                                  .steady_begin = 1 + states,
+                                  .steady_end = variables,
+                                  .states_begin = 1,
+                                  .states_end = 1 + states};
+
+std::vector<Table> tables() {
+  return {Table({-1, 0, 0.5, 2}, {0.5, -1, 1, 0}, Table::Between::linear),
+          Table({-0.5, 0.25, 1}, {1, -2, 0.5}, Table::Between::step)};
+}
+
+constexpr Op of_one[] = {Op::negate,
+                         Op::sine,
+                         Op::cosine,
+                         Op::tangent,
+                         Op::arc_sine,
+                         Op::arc_cosine,
+                         Op::arc_tangent,
+                         Op::hyperbolic_sine,
+                         Op::exponential,
+                         Op::logarithm,
+                         Op::hyperbolic_cosine,
+                         Op::hyperbolic_tangent,
+                         Op::logarithm10,
+                         Op::square_root,
+                         Op::absolute,
+                         Op::sign,
+                         Op::floor,
+                         Op::ceiling,
+                         Op::logical_not};
+constexpr Op of_two[] = {Op::add,     Op::subtract,   Op::multiply,     Op::divide,    Op::power, Op::minimum,
+                         Op::maximum, Op::hypotenuse, Op::arc_tangent2, Op::modulo,    Op::less,  Op::less_equal,
+                         Op::equal,   Op::not_equal,  Op::logical_and,  Op::logical_or};
+
+NodeId random_node(Graph& g, std::vector<NodeId>& nodes, std::mt19937& random) {
+  const auto any = [&] { return nodes[random() % nodes.size()]; };
+  switch (random() % 8) {
+    case 0:
+      return g.apply(of_one[random() % std::size(of_one)], any());
+    case 1:
+      return g.apply(of_two[random() % std::size(of_two)], any(), any());
+    case 2:
+      return g.select(g.less(any(), any()), any(), any());
+    case 3:
+      return random() % 2 ? g.interpolate(static_cast<std::uint32_t>(random() % 2), any())
+                          : g.interpolate_slope(0, any());
+    case 4:
+      return g.subtract(any(), g.multiply(any(), any()));
+    case 5:
+      return g.add(g.multiply(any(), any()), g.multiply(any(), any()));
+    case 6:
+      return g.multiply(g.subtract(any(), any()), any());
+    default:
+      return g.add(any(), any());
+  }
+}
+
+/// Expressions of everything, and of families with neighbours, mirrored and alone.
+std::vector<NodeId> random_expressions(Graph& g, std::mt19937& random, std::size_t count) {
+  std::vector<NodeId> nodes;
+  for (std::uint32_t i = 0; i < variables; ++i) nodes.push_back(g.variable(i));
+  for (const double c : {2.0, -1.0, 0.5, 1e-300, -0.0}) nodes.push_back(g.constant(c));
+  for (std::size_t i = 0; i < count; ++i) nodes.push_back(random_node(g, nodes, random));
+  return {nodes.end() - static_cast<std::ptrdiff_t>(count), nodes.end()};
+}
+
+std::vector<NodeId> random_family(Graph& g, std::mt19937& random) {
+  const auto shift = static_cast<std::uint32_t>(1 + random() % 3);
+  const Op outer = of_one[random() % std::size(of_one)], inner = of_two[random() % std::size(of_two)];
+  const bool mirrored = random() % 2 == 0;
+  std::vector<NodeId> rates;
+  for (std::uint32_t i = 0; i < states; ++i) {
+    const NodeId here = g.variable(1 + i);
+    const NodeId there = g.variable(1 + (mirrored ? states - 1 - i : (i + shift) % states));
+    const NodeId parameter = g.variable(1 + states + (random() % 50 == 0 ? 1 : 0));
+    rates.push_back(g.add(g.apply(outer, g.apply(inner, there, here)), g.multiply(parameter, g.subtract(there, here))));
+  }
+  return rates;
+}
+
+std::vector<double> random_values(std::mt19937& random) {
+  constexpr double special[] = {
+      0,     -0.0,    1,  -1, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(),
+      1e300, -1e-300, 0.5};
+  std::normal_distribution<double> normal;
+  std::vector<double> values(variables);
+  for (double& value : values) value = random() % 10 == 0 ? special[random() % std::size(special)] : normal(random);
+  return values;
+}
+
+std::vector<double> evaluated(const Tape& tape, const std::vector<double>& values) {
+  std::vector<double> registers(tape.register_count()), outputs(tape.output_count());
+  std::ranges::copy(values, registers.begin());
+  tape.prepare<double>(registers);
+  tape.evaluate<double>(registers, std::span(values).subspan(1, states), outputs);
+  return outputs;
+}
+
+/// Bits, but any NaN is as good as another: its sign and payload are those of the order of operands.
+std::uint64_t bits(double value) {
+  return std::isnan(value) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(value);
+}
+
+/// A folder of this test alone.
+struct Folder {
+  Folder() : path((fs::temp_directory_path() / "continuo-native-test-XXXXXX").string()) {
+    std::string name = path.string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    path = name;
+  }
+  ~Folder() { fs::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path path;
+};
+
+void expect_the_same_bits(Graph& g, const std::vector<NodeId>& outputs, std::mt19937& random, NativeCompiler& native) {
+  const auto tape = std::make_shared<const Tape>(g, outputs, layout, tables());
+  const auto compiled = std::make_shared<const Tape>(g, outputs, layout, tables());
+  native.watch(compiled);
+  ASSERT_TRUE(compiled->is_native()) << native.report().trouble;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<double> values = random_values(random);
+    const std::vector<double> expected = evaluated(*tape, values), actual = evaluated(*compiled, values);
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      ASSERT_EQ(bits(actual[k]), bits(expected[k])) << "output " << k << ": " << actual[k] << ", not " << expected[k];
+  }
+}
+
+TEST(Native, RandomExpressionsGiveTheBitsOfTheTape) {
+  const Folder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    Graph g;
+    expect_the_same_bits(g, random_expressions(g, random, 10 + seed * 30), random, *native);
+  }
+  EXPECT_EQ(native->report().trouble, "");
+}
+
+TEST(Native, FamiliesInLoopsGiveTheBitsOfTheTape) {
+  const Folder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::size_t loops = 0;
+  for (unsigned seed = 100; seed < 112; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    Graph g;
+    const std::vector<NodeId> outputs = random_family(g, random);
+    loops += Tape(g, outputs, layout, tables()).size().batches;
+    expect_the_same_bits(g, outputs, random, *native);
+  }
+  EXPECT_GT(loops, 12u);
+}
+
+/// A sum of many products of one state: 60 operations, an output.
+std::shared_ptr<const Tape> some_tape(double salt) {
+  Graph g;
+  NodeId sum = g.constant(salt);
+  for (std::uint32_t i = 1; i <= states; ++i)
+    sum = g.add(g.multiply(g.variable(i), sum), g.apply(Op::sine, g.variable(i)));
+  const NodeId outputs[] = {sum};
+  return std::make_shared<const Tape>(g, outputs, layout);
+}
+
+TEST(Native, TakesOverWhileTheTapeRuns) {
+  const Folder folder;
+  std::mt19937 random(5);
+  std::vector<double> values(variables, 0.25);
+  const auto tape = some_tape(1);
+  const double expected = evaluated(*tape, values).front();
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::automatic, folder.path / "cache"});
+  native->watch(tape);
+  EXPECT_FALSE(tape->count_use(1'000) && tape->is_native());
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!tape->is_native() && std::chrono::steady_clock::now() < give_up) {
+    ASSERT_EQ(evaluated(*tape, values).front(), expected);
+    tape->count_use(1'000'000);
+  }
+  ASSERT_TRUE(tape->is_native()) << native->report().trouble;
+  EXPECT_EQ(evaluated(*tape, values).front(), expected);
+  EXPECT_EQ(native->report().compiled, 1u);
+  // The next process finds it, after less work.
+  const auto again = some_tape(1);
+  const auto other = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::automatic, folder.path / "cache"});
+  other->watch(again);
+  EXPECT_FALSE(again->count_use(1'000'001));
+  EXPECT_TRUE(again->is_native());
+  EXPECT_EQ(other->report().loaded, 1u);
+}
+
+TEST(Native, IsGivenUpAtOnceWhereTheRunEnds) {
+  const Folder folder;
+  const fs::path slow = folder.path / "slow";
+  std::ofstream(slow) << "#!/bin/sh\nexec sleep 60\n";
+  fs::permissions(slow, fs::perms::owner_all);
+  setenv("CC", slow.c_str(), 1);
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    const auto tape = some_tape(2);
+    const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::automatic, folder.path / "cache"});
+    native->watch(tape);
+    for (int i = 0; i < 40; ++i) tape->count_use(1'000'000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  unsetenv("CC");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+TEST(Native, WithoutACompilerTheTapeGoesOnAndSaysWhy) {
+  const Folder folder;
+  setenv("CC", "/nowhere/cc", 1);
+  const auto tape = some_tape(3);
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  native->watch(tape);
+  unsetenv("CC");
+  EXPECT_FALSE(tape->is_native());
+  EXPECT_THAT(native->report().trouble, ::testing::HasSubstr("/nowhere/cc"));
+  EXPECT_TRUE(std::isfinite(evaluated(*tape, std::vector<double>(variables, 0.25)).front()));
+}
+
+TEST(Native, FilesThatWereAlteredAreNotLoaded) {
+  const Folder folder;
+  const NativeCache cache(folder.path / "cache");
+  ASSERT_TRUE(cache.status()) << cache.status().message;
+  const fs::path made = folder.path / "made.so";
+  std::ofstream(made) << "machine code";
+  cache.keep("text", made);
+  const auto kept = cache.find("text");
+  ASSERT_TRUE(kept);
+  EXPECT_FALSE(cache.find("another text"));
+  std::ofstream(*kept, std::ios::app) << "!";
+  EXPECT_FALSE(cache.find("text"));
+  fs::resize_file(*kept, 4);
+  EXPECT_FALSE(cache.find("text"));
+  cache.keep("text", made);
+  EXPECT_TRUE(cache.find("text"));
+  fs::permissions(*kept, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_FALSE(cache.find("text"));
+}
+
+TEST(Native, TheCacheStaysSmall) {
+  const Folder folder;
+  const NativeCache cache(folder.path / "cache");
+  const fs::path made = folder.path / "made.so";
+  std::ofstream(made) << std::string(15'000'000, 'x');
+  for (const char* text : {"a", "b", "c", "d"}) cache.keep(text, made);
+  EXPECT_TRUE(cache.find("a"));  // used now: "b" is the oldest
+  cache.keep("e", made);
+  EXPECT_TRUE(cache.find("a") && cache.find("c") && cache.find("d") && cache.find("e"));
+  EXPECT_FALSE(cache.find("b"));
+}
+
+TEST(Native, AFolderThatOthersCanWriteIsNoCache) {
+  const Folder folder;
+  const fs::path open = folder.path / "open";
+  fs::create_directory(open);
+  fs::permissions(open, fs::perms::all);
+  EXPECT_FALSE(NativeCache(open).status());
+  EXPECT_THAT(NativeCache(open).status().message, ::testing::HasSubstr("others can write it"));
+  EXPECT_FALSE(NativeCache(open / "below").status());
+  EXPECT_FALSE(NativeCache("").status());
+  // A link leads to where it leads.
+  fs::create_directory_symlink(open, folder.path / "link");
+  EXPECT_FALSE(NativeCache(folder.path / "link").status());
+  EXPECT_TRUE(NativeCache(folder.path / "own").status());
+  struct stat info = {};
+  ASSERT_EQ(stat((folder.path / "own").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777u, 0700u);
+}
+
+}  // namespace
+}  // namespace continuo::model::native_test
