@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
       OwnVerb{"report", add_report},
       OwnVerb{"methods", add_methods},
       OwnVerb{"explain", add_explain},
+      OwnVerb{"export", add_export},
       OwnVerb{"new", add_new},
       OwnVerb{"help", add_help},
   };

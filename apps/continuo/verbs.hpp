@@ -16,6 +16,7 @@ void add_verify(CLI::App& app, ExitCode& exit);
 void add_report(CLI::App& app, ExitCode& exit);
 void add_methods(CLI::App& app, ExitCode& exit);
 void add_explain(CLI::App& app, ExitCode& exit);
+void add_export(CLI::App& app, ExitCode& exit);
 void add_new(CLI::App& app, ExitCode& exit);
 
 // Of the program continuo-studies.

@@ -39,6 +39,7 @@ inline constexpr std::array all_verbs{
     ListedVerb{"fit", "Finds parameters and initial values from measurements", Program::studies},
     ListedVerb{"methods", "Lists the integration methods"},
     ListedVerb{"explain", "Explains the code of a message"},
+    ListedVerb{"export", "Writes the equations of a model as C functions"},
     ListedVerb{"new", "Writes a commented model to start from"},
     ListedVerb{"help", "Shows the options of a verb"},
 };
