@@ -57,7 +57,7 @@ class Loop {
     std::uint64_t client;
   };
   static constexpr std::size_t most_waiting = 1000;
-  static constexpr double longest_wait = 0.1;  // seconds that commands wait for a step
+  static constexpr double longest_wait = 0.05;  // seconds that commands wait for a step
 
   void run();
   void obey(const std::vector<Waiting>& waiting);

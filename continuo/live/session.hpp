@@ -151,6 +151,7 @@ class Session {
 
   std::uint32_t run_ = 0;
   double state_said_ = -1e300;  // when
+  bool takes_long_ = false;     // the motion of the last turn, which was that of a heavy step
 };
 
 }  // namespace continuo::live

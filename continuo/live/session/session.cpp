@@ -31,6 +31,8 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+constexpr double long_turn = 0.05;  // seconds: three pictures
+
 /// Stands for a model whose text is wrong.
 constexpr std::string_view nothing_that_moves = "model Nothing\nrest' = 0\nrest(0) = 0\nrun 0..1\n";
 
@@ -181,8 +183,13 @@ void Session::pick(std::size_t body) {
 
 void Session::turn() {
   const double wall = now_();
+  if (takes_long_ && playback_.state_has_changed()) {  // who changed something does not wait for the next step as well
+    publish();
+    say_state();
+  }
   const bool had_ghost = playback_.ghost() != nullptr;
   playback_.play_on(wall);
+  takes_long_ = now_() - wall > long_turn;
   if (had_ghost && !playback_.ghost()) interaction_.forget_ghost();
   drag_.watch(wall);
   publish();
