@@ -12,6 +12,7 @@
 
 #include <continuo/language/load_confined.hpp>
 #include <continuo/live/server/client.hpp>
+#include <continuo/live/server/peer_user.hpp>
 #include <continuo/live/server/reachable_name.hpp>
 #include <continuo/live/session/messages.hpp>
 
@@ -88,6 +89,10 @@ std::string Server::url() const {
   return fmt::format("http://{}/?token={}", parts_->host(), parts_->tokens.presenter);
 }
 
+std::string Server::first_url() const {
+  return fmt::format("http://{}/{}", parts_->host(), parts_->tokens.first);
+}
+
 std::string Server::viewers_url() const {
   return parts_->viewers_address();
 }
@@ -149,6 +154,13 @@ std::string Server::Parts::host() const {
 
 std::string Server::Parts::viewers_address() const {
   return fmt::format("http://{}/{}", host(), tokens.viewers);
+}
+
+/// Everybody on this computer can read it in the list of processes: it is good for one request, of the own user.
+bool Server::Parts::admits_first(const tcp::socket& socket) {
+  if (first_used || !is_of_own_user(socket)) return false;
+  first_used = true;
+  return true;
 }
 
 void Server::Parts::add(const std::shared_ptr<Client>& client) {

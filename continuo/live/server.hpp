@@ -5,7 +5,7 @@
 //
 //   Server server({.page = page}, say);
 //   if (const Status status = server.listen(); !status) std::cerr << describe(status) << '\n';
-//   server.start();  open_browser(server.url());
+//   server.start();  open_browser(server.first_url());
 //   session.turn();                                 // server is the session's Audience
 #pragma once
 #include <cstddef>
@@ -40,6 +40,7 @@ struct ServerOptions {
 struct OwnSession {
   int socket;  // to be duplicated
   std::string request, path, text;
+  std::string address;  // of their computer
 };
 
 /// What the server needs of who runs the model; called on the server's thread.
@@ -49,6 +50,7 @@ struct ServerHooks {
   std::function<void(std::size_t clients)> attached{};           // of those whose session it is
   std::function<std::optional<Work>()> watch{};                  // what takes long, if anything
   std::function<bool(const OwnSession&)> own_session{};          // false: there are too many
+  std::function<void()> acted{};                                 // somebody gave a command, or types a text
 };
 
 /// A server of one session.
@@ -76,6 +78,9 @@ class Server final : public Audience {
   [[nodiscard]] unsigned short port() const;
   /// The address of the page, after `listen`: the presenter's.
   [[nodiscard]] std::string url() const;
+  /// An address that leads to the presenter's once, and no other user of this computer: a browser that is started with
+  /// it has it on its command line, which everybody here can read.
+  [[nodiscard]] std::string first_url() const;
   /// That of viewers, as short as can be.
   [[nodiscard]] std::string viewers_url() const;
   /// The number of clients that are connected.

@@ -5,6 +5,7 @@ import http.client
 import json
 import math
 import os
+import random
 import shutil
 import signal
 import socket
@@ -254,7 +255,7 @@ class Protocol(unittest.TestCase):
                 busy = view.until(lambda m: said("busy")(m) and m["with"] == "motion", 120)
                 self.assertGreater(busy["seconds"], 0)
                 waits = []
-                for value in (0.5, 0.6, 0.7, 0.8):
+                for value in (0.5, 0.6, 0.7, 0.8, 0.9):
                     begin = time.monotonic()
                     view.say("set", parameter="k", value=value)
                     view.until(lambda m: state(m) and m["parameters"]["k"] == value, 60)
@@ -265,8 +266,111 @@ class Protocol(unittest.TestCase):
                 cancelled = time.monotonic() - begin
                 print(f"heavy: answered within {1e3 * max(waits):.0f} ms, cancelled within {1e3 * cancelled:.0f} ms",
                       file=sys.stderr)
-                self.assertLess(cancelled, 10)  # 1 s where the machine is not busy with other tests
+                # 0.1 s and 0.03 s where the machine is not busy with other tests; a step takes a second or two.
+                self.assertLess(sorted(waits)[2], 1)
+                self.assertLess(cancelled, 10)
                 view.close()
+
+    def test_the_browsers_command_line_gives_nothing_away(self):
+        with tempfile.TemporaryDirectory() as folder:
+            told = os.path.join(folder, "told")
+            with open(os.path.join(folder, "xdg-open"), "w") as file:
+                file.write(f'#!/bin/sh\necho "$1" > {told}.part && mv {told}.part {told}\n')
+            os.chmod(file.name, 0o755)
+            process = subprocess.Popen([command, "view", os.path.join(root, "models", "pendulum.sim"), "--paused"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                                       env={**os.environ, "PATH": folder + os.pathsep + os.environ["PATH"]})
+            try:
+                parts = urlsplit(process.stdout.readline().strip())
+                end = time.monotonic() + 20
+                while not os.path.exists(told) and time.monotonic() < end:
+                    time.sleep(0.02)
+                with open(told) as file:
+                    first = file.read().strip()
+                self.assertNotIn(parts.query.removeprefix("token="), first)
+                self.assertEqual(urlsplit(first).netloc, parts.netloc)
+
+                def status_of(address):
+                    connection = http.client.HTTPConnection(parts.netloc, timeout=10)
+                    connection.request("GET", urlsplit(address).path)
+                    answer = connection.getresponse()
+                    return answer.status, answer.getheader("Location")
+
+                if os.geteuid() == 0:  # somebody else on this computer, who read it in the list of processes
+                    script = (f"import http.client; c = http.client.HTTPConnection({parts.netloc!r}); "
+                              f"c.request('GET', {urlsplit(first).path!r}); print(c.getresponse().status)")
+                    other = subprocess.run([shutil.which("python3", path="/usr/bin") or sys.executable, "-c", script],
+                                           capture_output=True, text=True, timeout=20, user=65534, cwd="/")
+                    self.assertEqual(other.stdout.strip(), "403", other.stderr)
+                self.assertEqual(status_of(first), (303, f"/?{parts.query}"))
+                self.assertEqual(status_of(first), (403, None))
+            finally:
+                process.send_signal(signal.SIGINT)
+                process.communicate(timeout=20)
+
+    def test_nothing_that_is_said_breaks_or_gives_away_anything(self):
+        """Random members of the class of all messages: as presenter, as viewer, and as the owner of a session."""
+        chance = random.Random(3)
+        secret = "nobody may read this"
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "ball.sim")
+            with open(os.path.join(root, "models", "bouncing_ball.sim")) as file:
+                text = file.read()
+            with open(path, "w") as file:
+                file.write(text)
+            with open(os.path.join(folder, "notes.txt"), "w") as file:
+                file.write(secret)
+            os.symlink("/etc/passwd", os.path.join(folder, "link.csv"))
+            os.mkfifo(os.path.join(folder, "pipe.csv"))
+            before = sorted(os.listdir(folder))
+            places = ["/etc/passwd", "../x.csv", "link.csv", "pipe.csv", "notes.txt", "/proc/self/environ", "/dev/zero",
+                      "a\nb", ""]
+            texts = [text, "x' = 1\nx(0) = 0\n", "(" * 500] + [
+                f"table a from \"{place}\"\nz' = interp(a, t)\nz(0) = 0\n" for place in places]
+            values = [None, True, -1, 0, 1e308, 0.5, [], [1, 2], {}, "", "rk4", "h0", "pendulum", "../ball", *texts]
+            names = ["id", "fps", "text", "t", "value", "parameter", "name", "step", "rtol", "item", "body", "to", "model",
+                     "say"]
+            with Viewed(path, "--listen", "127.0.0.1", "--viewers", "own") as viewed:
+                presenter = View(viewed.address)
+                commands = presenter.until(said("role"))["may"] + ["save", "format"]
+                presenter.close()
+                ways = [(viewed.address, False), (viewed.viewers_address(), False), (viewed.viewers_address(), True)]
+                for address, own in ways:
+                    view = View(address, own=own, timeout=30)
+                    for _ in range(150):
+                        message = json.dumps({"do": chance.choice(commands), **{name: chance.choice(values) for name in
+                                                                               chance.sample(names, chance.randrange(8))}})
+                        spoiled = chance.randrange(30)
+                        try:
+                            if spoiled == 0:
+                                view.send(1, message.encode()[:-1])
+                            elif spoiled == 1:
+                                view.send(2, b"abc")
+                            elif spoiled == 2:
+                                view.send(1, b"[" * 3000)
+                            else:
+                                view.send(1, message.encode())
+                        except OSError:  # shown out, after many that were wrong
+                            view = View(address, own=own, timeout=30)
+                    try:
+                        view.say("ping", id=99)
+                        heard = []
+
+                        def is_pong(message):
+                            if isinstance(message, dict):
+                                heard.append(json.dumps(message))
+                            return said("pong")(message)
+
+                        view.until(is_pong, 60)
+                        self.assertNotIn(secret, "".join(heard))
+                        self.assertNotIn("root:", "".join(heard))
+                    except (ConnectionError, OSError, AttributeError):
+                        pass
+                    view.close()
+                View(viewed.address).until(said("model"))
+            with open(path) as file:
+                self.assertEqual(file.read(), text)
+            self.assertEqual(sorted(os.listdir(folder)), before)
 
     def test_a_new_client_never_gets_a_frame_of_another_model(self):
         with Viewed("pendulum.sim") as viewed:

@@ -82,9 +82,21 @@ TEST(OriginGuard, TellsViewersFromPresenters) {
   EXPECT_EQ(origin_guard.judge(request_for("/?token=abcdefghj")).verdict, Verdict::wrong_token);
 }
 
+TEST(OriginGuard, KnowsTheAddressForTheBrowsersCommandLine) {
+  const std::string first = "fedcba9876543210fedcba9876543210";
+  const OriginGuard origin_guard({token, "abcdefghjk", first}, "127.0.0.1", 4000);
+  EXPECT_EQ(origin_guard.judge(request_for("/" + first)).verdict, Verdict::first_address);
+  EXPECT_EQ(origin_guard.judge(request_for("/?token=" + first)).verdict, Verdict::wrong_token);
+  EXPECT_EQ(origin_guard.judge(request_for("/" + token)).verdict, Verdict::not_found);
+  const OriginGuard without(tokens, "127.0.0.1", 4000);  // a session that no browser is started for
+  EXPECT_EQ(without.judge(request_for("/")).verdict, Verdict::wrong_token);
+}
+
 TEST(OriginGuard, TokensDiffer) {
   EXPECT_EQ(make_tokens().presenter.size(), 32U);
   EXPECT_EQ(make_tokens().viewers.size(), 10U);
+  EXPECT_EQ(make_tokens().first.size(), 32U);
+  EXPECT_NE(make_tokens().first, make_tokens().first);
   EXPECT_NE(make_tokens().presenter, make_tokens().presenter);
   EXPECT_NE(make_tokens().viewers, make_tokens().viewers);
 }

@@ -141,7 +141,7 @@ ExitCode show_to_the_world(const ViewRequest& request, std::vector<std::string> 
   } else {
     print_addresses(request, server);
   }
-  if (!quiet) open_browser(server.url());
+  if (!quiet) open_browser(server.first_url());
   while (!interrupted.load()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   loop.stop();
   server.stop();

@@ -129,6 +129,7 @@ void Client::obey(std::string text) {
         fmt::format("`{}` is {}", command.what,
                     saves ? "off here: `continuo view --allow-save` lets the page write the file" : "the presenter's"));
   }
+  if (parts_->hooks.acted && command.what != "ping" && command.what != "rate") parts_->hooks.acted();
   const bool for_me = command.what == "check" || command.what == "ping" || command.what == "rate";
   if (!for_me) return hand_on(std::move(command));
   Result<Asked> what = asked(command);

@@ -53,7 +53,8 @@ Query read_query(std::string_view query) {
 
 Tokens make_tokens() {
   // Without letters and digits that look alike.
-  return {random_text("0123456789abcdef", 32), random_text("23456789abcdefghjkmnpqrstuvwxyz", 10)};
+  constexpr std::string_view digits = "0123456789abcdef";
+  return {random_text(digits, 32), random_text("23456789abcdefghjkmnpqrstuvwxyz", 10), random_text(digits, 32)};
 }
 
 OriginGuard::OriginGuard(Tokens tokens, std::string address, unsigned port)
@@ -74,9 +75,11 @@ Admission OriginGuard::judge(const Request& request) const {
   const std::size_t question = request.target.find('?');
   const std::string_view path = request.target.substr(0, question);
   const Query query = read_query(question == std::string_view::npos ? "" : request.target.substr(question + 1));
-  if (path.size() == tokens_.viewers.size() + 1 && is_token(path.substr(1), tokens_.viewers) &&
-      knows_host(request.host))
-    return {Verdict::short_address};
+  const auto is_address_of = [&](const std::string& name) {
+    return path.size() == name.size() + 1 && is_token(path.substr(1), name) && knows_host(request.host);
+  };
+  if (is_address_of(tokens_.viewers)) return {Verdict::short_address};
+  if (!tokens_.first.empty() && is_address_of(tokens_.first)) return {Verdict::first_address};
   const bool live = path == "/live";
   if (!live && path != "/") return {Verdict::not_found};
   if (!knows_host(request.host)) return {Verdict::wrong_host};

@@ -19,7 +19,17 @@ struct Request {
   bool upgrade = false;
 };
 
-enum class Verdict { page, live, short_address, wrong_token, wrong_origin, wrong_host, not_found, wrong_method };
+enum class Verdict {
+  page,
+  live,
+  short_address,
+  first_address,
+  wrong_token,
+  wrong_origin,
+  wrong_host,
+  not_found,
+  wrong_method
+};
 
 /// What is decided of a request.
 struct Admission {
@@ -31,6 +41,7 @@ struct Admission {
 struct Tokens {
   std::string presenter;  // 128 bits from the operating system, in hexadecimal digits
   std::string viewers;    // 49 bits, in ten letters and digits that a class can copy from a blackboard
+  std::string first{};    // of an address that leads to the presenter's once: for the browser's command line
 };
 Tokens make_tokens();
 

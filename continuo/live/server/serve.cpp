@@ -108,6 +108,16 @@ class Door : public std::enable_shared_from_this<Door> {
       response_.set(http::field::location, "/?token=" + parts_->tokens.viewers);
       return send(http::status::see_other, "text/plain", "");
     }
+    if (admission.verdict == Verdict::first_address) {
+      if (!parts_->admits_first(stream_.socket())) {
+        parts_->once("refused: the address that the browser was started with, for the second time or by somebody else");
+        return send(http::status::forbidden, "text/plain",
+                    "This address is good for one time, and for who began the view. Open the one that `continuo view` "
+                    "printed.\n");
+      }
+      response_.set(http::field::location, "/?token=" + parts_->tokens.presenter);
+      return send(http::status::see_other, "text/plain", "");
+    }
     const bool lets_in = admission.verdict == Verdict::page || admission.verdict == Verdict::live;
     if (!lets_in) {
       const Refusal refusal = refusal_of(admission.verdict);
@@ -148,7 +158,8 @@ class Door : public std::enable_shared_from_this<Door> {
     const OwnSession own{.socket = stream_.socket().native_handle(),
                          .request = request.str(),
                          .path = shown["path"],
-                         .text = shown["text"]};
+                         .text = shown["text"],
+                         .address = address_};
     if (!hooks.own_session(own))
       return send(http::status::service_unavailable, "text/plain", "There are too many sessions already.\n");
     // Released before it is closed: the connection lives on in the other process, and would go on to report here.

@@ -30,6 +30,7 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
   void accept();
   std::string host() const;
   std::string viewers_address() const;
+  bool admits_first(const boost::asio::ip::tcp::socket& socket);
   void add(const std::shared_ptr<Client>& client);
   void remove(std::uint64_t client);
   void tell_rate();
@@ -42,6 +43,7 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
   ServerOptions options;
   SayOnce once;
   Tokens tokens = make_tokens();
+  bool first_used = false;  // the address for the browser's command line, which is good for once
   std::optional<OriginGuard> origin_guard;
   ServerHooks hooks;
 
