@@ -18,6 +18,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,6 +47,15 @@ int file_with(const std::string& text) {
   if (written && ::lseek(file, 0, SEEK_SET) == 0) return file;
   ::close(file);
   return -1;
+}
+
+/// The seconds since this file was changed or touched.
+double age_of(int file) {
+  struct stat facts{};
+  timespec now{};
+  if (::fstat(file, &facts) != 0 || ::clock_gettime(CLOCK_REALTIME, &now) != 0) return 0;
+  return static_cast<double>(now.tv_sec - facts.st_mtim.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec - facts.st_mtim.tv_nsec);
 }
 
 /// This program again, with these two descriptors and no other.
@@ -82,23 +92,47 @@ void limit(std::size_t memory) {
 
 }  // namespace
 
+struct OwnSessions::Process {
+  Process() = default;
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process() {
+    if (letter >= 0) ::close(letter);
+  }
+
+  void end() const {
+    if (id > 0) ::kill(id, SIGKILL);  // of another sign it would be a group of processes, or all
+  }
+
+  pid_t id = -1;
+  int letter = -1;  // what it began with; touched whenever its viewer does something
+  std::unique_ptr<live::Places::Place> place;
+};
+
+OwnSessions::OwnSessions(std::vector<std::string> models) : models_(std::move(models)) {}
+OwnSessions::~OwnSessions() = default;
+
 void OwnSessions::forget_ended() {
-  std::erase_if(processes_, [](pid_t process) { return ::waitpid(process, nullptr, WNOHANG) != 0; });
+  std::erase_if(processes_, [](const auto& process) { return ::waitpid(process->id, nullptr, WNOHANG) != 0; });
 }
 
 bool OwnSessions::start(const live::OwnSession& session) {
   forget_ended();
   const auto found = std::ranges::find_if(
       models_, [&](const std::string& path) { return std::filesystem::path(path).filename() == session.path; });
-  if (processes_.size() >= most || found == models_.end()) return false;
+  if (found == models_.end()) return false;
+  auto own = std::make_unique<Process>();
+  own->place = places_.enter(
+      live::Guest::owner, session.address, [process = own.get()] { process->end(); },
+      [process = own.get()] { return age_of(process->letter); });
+  if (!own->place) return false;
   const nlohmann::json text = {{"request", session.request}, {"text", session.text}};
-  const int file = file_with(text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  if (file < 0) return false;
-  const pid_t process = start_again(
-      {"continuo", "view", "--own-session", fmt::format("{}", memory_of_each()), "--", *found}, session.socket, file);
-  ::close(file);
-  if (process < 0) return false;
-  processes_.insert(process);
+  own->letter = file_with(text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (own->letter < 0) return false;
+  own->id = start_again({"continuo", "view", "--own-session", fmt::format("{}", memory_of_each()), "--", *found},
+                        session.socket, own->letter);
+  if (own->id < 0) return false;
+  processes_.push_back(std::move(own));
   return true;
 }
 
@@ -115,7 +149,8 @@ ExitCode serve_own_session(const std::string& file, std::vector<live::GalleryMod
       {.command = [&](live::Command command, std::uint64_t client) { return loop.post(std::move(command), client); },
        .rate = [&](double pictures) { loop.set_rate(pictures); },
        .attached = [&](std::size_t clients) { clients > 0 ? came = true : left = came.load(); },
-       .watch = [&] { return loop.watch(); }});
+       .watch = [&] { return loop.watch(); },
+       .acted = [] { ::futimens(letter, nullptr); }});
   const nlohmann::json run = {{"do", "run"}, {"text", begin["text"]}};
   loop.post({"run", run.dump()}, 0);
   loop.post({"play", R"({"do": "play"})"}, 0);

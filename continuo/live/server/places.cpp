@@ -13,10 +13,10 @@ Places::Place::~Place() {
   if (const auto all = all_.lock()) all->entries.erase(number_);
 }
 
-std::unique_ptr<Places::Place> Places::enter(Guest guest, const std::string& address, Leave leave) {
+std::unique_ptr<Places::Place> Places::enter(Guest guest, const std::string& address, Leave leave, Idle idle) {
   if (count(guest) >= limit(guest) && !make_room(guest, address)) return nullptr;
   const std::uint64_t number = ++all_->last;
-  all_->entries.emplace(number, Entry{guest, address, std::move(leave)});
+  all_->entries.emplace(number, Entry{guest, address, std::move(leave), std::move(idle)});
   return std::make_unique<Place>(all_, number);
 }
 
@@ -26,6 +26,8 @@ std::size_t Places::limit(Guest guest) const {
       return limits_.viewers;
     case Guest::presenter:
       return limits_.presenters;
+    case Guest::owner:
+      return limits_.owners;
     case Guest::stranger:
       break;
   }
@@ -56,8 +58,26 @@ bool Places::make_room(Guest guest, const std::string& address) {
     return true;
   }
   const std::string fullest = fullest_address(guest);
-  if (guest == Guest::viewer && count_of(guest, fullest) < count_of(guest, address) + 2) return false;
+  const bool is_fair = count_of(guest, fullest) < count_of(guest, address) + 2;
+  if (guest == Guest::owner) return make_room_for_owner(is_fair ? nullptr : &fullest);
+  if (guest == Guest::viewer && is_fair) return false;
   turn_out(guest, &fullest, guest == Guest::stranger);
+  return true;
+}
+
+bool Places::make_room_for_owner(const std::string* fullest) {
+  auto idlest = all_->entries.end();
+  double longest = -1;
+  for (auto each = all_->entries.begin(); each != all_->entries.end(); ++each) {
+    const Entry& entry = each->second;
+    if (entry.guest != Guest::owner || (fullest && entry.address != *fullest)) continue;
+    const double idle = entry.idle ? entry.idle() : 0;
+    if (idle <= longest) continue;
+    longest = idle;
+    idlest = each;
+  }
+  if (!fullest && longest < limits_.idle) return false;
+  turn_out(idlest);
   return true;
 }
 
@@ -70,6 +90,10 @@ void Places::turn_out(Guest guest, const std::string* address, bool oldest) {
     for (auto other = chosen; other != all_->entries.end(); ++other)
       if (is_one(*other)) chosen = other;
   }
+  turn_out(chosen);
+}
+
+void Places::turn_out(std::map<std::uint64_t, Entry>::iterator chosen) {
   const Leave leave = std::move(chosen->second.leave);
   all_->entries.erase(chosen);  // before it leaves: its place is free already
   leave();
