@@ -49,5 +49,24 @@ TEST(LiveHeavy, AnInterruptedStepChangesNothing) {
   }
 }
 
+// Ten pictures a second, of which each look at the clock takes a third: the second turn knows that steps take long.
+TEST(LiveHeavy, AChangeIsAnsweredBeforeTheNextStep) {
+  Stage stage(coupled(70));
+  stage.cost = 0.03;
+  stage.session->set_rate(10);
+  stage.session->set_speed(0);
+  stage.session->play();
+  stage.session->turn();
+  const double before = stage.session->history().last_time();
+  stage.session->set_parameter("k", 1.25);
+  stage.audience.texts.clear();
+  stage.session->turn();
+  ASSERT_GT(stage.session->history().last_time(), before) << "a step was made";
+  const auto states = stage.audience.said("state");
+  ASSERT_FALSE(states.empty());
+  EXPECT_EQ(states.front()["parameters"]["k"], 1.25);
+  EXPECT_EQ(states.front()["history"][1], before);
+}
+
 }  // namespace
 }  // namespace continuo::live
