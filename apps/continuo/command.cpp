@@ -1,7 +1,9 @@
 // Parses the command line and runs the verb that it names.
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <string>
+#include <string_view>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -97,6 +99,11 @@ Ended call(int argc, char** argv, std::span<const OwnVerb> verbs) {
 }  // namespace
 
 int run_command(int argc, char** argv, std::span<const OwnVerb> verbs) {
+  if (wants_json(argc, argv)) {
+    const std::string_view verb = argv[1];
+    answer_even_if_interrupted(std::ranges::find(all_verbs, verb, &ListedVerb::name) == std::end(all_verbs) ? ""
+                                                                                                            : verb);
+  }
   const Ended ended = call(argc, argv, verbs);
   if (wants_json(argc, argv) && !ended.showed_help) print_answer(ended.verb, ended.exit);
   if (ended.exit != done) return ended.exit;

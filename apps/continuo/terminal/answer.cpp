@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <apps/continuo/terminal/answer.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <nlohmann/json.hpp>
 
@@ -28,13 +29,22 @@ Answer& the_answer() {
   return answer;
 }
 
-void print_with(Answer& answer, std::string_view layout, const Json& head) {
+std::string text_of(std::string_view layout, const Json& head, const Json& messages, const Json& fields) {
   Json document{{"layout", layout}};
   document.update(head);
-  document["messages"] = answer.messages;
-  document.update(answer.fields);
+  document["messages"] = messages;
+  document.update(fields);
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void print_with(Answer& answer, std::string_view layout, const Json& head) {
+  answer_interrupt_with("");  // it would be a second one
   answer.printed = true;
-  print(document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  print(text_of(layout, head, answer.messages, answer.fields));
+}
+
+Json head_of_failure(std::string_view verb, int exit) {
+  return {{"verb", verb.empty() ? Json() : Json(verb)}, {"exit", exit}};
 }
 
 }  // namespace
@@ -57,12 +67,18 @@ void answer(std::string_view layout, Json fields) {
   answer.fields = std::move(fields);
 }
 
+void answer_even_if_interrupted(std::string_view verb) {
+  const Json message{{"severity", "error"}, {"message", "interrupted before there was a result"}};
+  answer_interrupt_with(
+      text_of(failure_layout, head_of_failure(verb, interrupted), Json::array({message}), Json::object()));
+}
+
 void print_answer(std::string_view verb, int exit) {
   Answer& answer = the_answer();
   const std::scoped_lock lock(answer.mutex);
   if (answer.printed) return;
   if (answer.layout) return print_with(answer, *answer.layout, {{"exit", exit}});
-  print_with(answer, failure_layout, {{"verb", verb.empty() ? Json() : Json(verb)}, {"exit", exit}});
+  print_with(answer, failure_layout, head_of_failure(verb, exit));
 }
 
 void print_answer_now() {

@@ -22,6 +22,9 @@ void record_message(nlohmann::ordered_json message);
 /// are not finite become null, bytes that are not UTF-8 the replacement character.
 void answer(std::string_view layout, nlohmann::ordered_json fields);
 
+/// Where a signal ends the process in the middle of its work, this verb has an answer all the same.
+void answer_even_if_interrupted(std::string_view verb);
+
 /// Prints the answer, with the exit code and all messages up to now. Without a result it is one of `failure_layout`.
 void print_answer(std::string_view verb, int exit);
 

@@ -1,12 +1,16 @@
 // apps/continuo/terminal/own_process.cpp
 // Calls the command itself in a process of its own, and reads what it prints.
-#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <thread>
+#include <utility>
 
+#include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/own_process.hpp>
 #include <fcntl.h>
 #include <spawn.h>
@@ -51,8 +55,12 @@ Printed call_self(const std::vector<std::string>& arguments, const std::string& 
   const int problem = posix_spawn(&process, "/proc/self/exe", &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) return {};
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  int status = -1;
+  bool is_told = false;
+  constexpr auto moment = std::chrono::milliseconds(10);
+  while (waitpid(process, &status, WNOHANG) == 0) {
+    if (interrupt_flag().load() && !std::exchange(is_told, true)) ::kill(process, SIGTERM);
+    std::this_thread::sleep_for(moment);
   }
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(out), contents_of(err)};
 }

@@ -69,6 +69,7 @@ results::ReportSection section_of(std::string title, std::vector<std::string> wo
 }
 
 ExitCode report(const ReportOptions& options) {
+  interrupt_flag();  // handled from here on: what runs is told to end
   if (!readable(options.file) || writes_files(options.studies)) return usage;
   const model::Loaded loaded = load_model(options.file);
   if (!loaded) return wrong_model;
