@@ -227,15 +227,38 @@ def exit_codes_are_the_same_for_all_verbs():
     answer([], 1, layout="continuo.failure/1")
     answer(["explain", "E999"], 1, layout="continuo.failure/1")
     answer(["help", "nothing"], 1, layout="continuo.failure/1")
-    for words in (["run", "long.sim"], ["orbit", "models/lorenz.sim", "--lyapunov", "--duration", "1e7"]):
-        running = subprocess.Popen([continuo, *words, "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-        time.sleep(1.5)
+
+
+def an_interrupt_is_answered():
+    """While a model is read, in a run, in a study, and in a run that another verb has begun."""
+    all_words = [["run", "long.sim"], ["run", "long.sim", "--set", "k=1,2"], ["verify", "long.sim"], ["info", "-"],
+                 ["check", "-"], ["report", "long.sim", "-o", "long.html"],
+                 ["view", "long.sim", "--record", "long", "--until", "1e5"],
+                 ["compare", "long.sim", "--methods", "rk4,gauss4", "--step", "0.001"], ["sense", "long.sim", "--param", "k"],
+                 ["explore", "long.sim"], ["orbit", "models/lorenz.sim", "--lyapunov", "--duration", "1e7"]]
+    all_running = [subprocess.Popen([continuo, *words, "--json"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                    stderr=subprocess.DEVNULL) for words in all_words]
+    time.sleep(3)
+    for running in all_running:
         running.send_signal(signal.SIGINT)
-        document = json.loads(running.communicate(timeout=100)[0])
+    for words, running in zip(all_words, all_running):
+        document = json.loads(running.stdout.read())  # standard input stays open: who reads it waits
+        running.wait(timeout=100)
         if running.returncode != 130 or document["exit"] != 130:
             fail(words, "after Ctrl-C ends with", running.returncode, document["exit"])
         for problem in validator_of(document["layout"]).iter_errors(document):
             fail(words, problem.message)
+    # A run of a fit is not cut off: a second Ctrl-C ends it, with an answer.
+    far = "t,x\n" + "".join(f"{1e5*i},{i % 3}\n" for i in range(10))
+    pathlib.Path("far.csv").write_text(far)
+    running = subprocess.Popen([continuo, "fit", "long.sim", "far.csv", "--param", "k", "--json"], stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL)
+    for _ in range(2):
+        time.sleep(1.5)
+        running.send_signal(signal.SIGINT)
+    document = json.loads(running.communicate(timeout=100)[0])
+    if (running.returncode, document["layout"]) != (130, "continuo.failure/1"):
+        fail("fit after two Ctrl-C:", running.returncode, document)
 
 
 def standard_input():
@@ -317,7 +340,7 @@ with tempfile.TemporaryDirectory() as folder:
         "blows.sim": "x' = x^2\nx(0) = 1\nrun 0..2\n",
         "fails.sim": "x' = -x\nx(0) = 1\nrun 0..1\ncheck x(1) = 5 within 1e-3\n",
         "flies.sim": "x' = 1 + x^2\nx(0) = 0\nrun 0..1\n",
-        "long.sim": "x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..1e9 output 1e8 method rk4 step 0.001\n",
+        "long.sim": "param k = 1\nx'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..1e9 output 1e8 method rk4 step 0.001\n",
         "rest.sim": "param a = 2\nx' = a - x\nx(0) = 0\nrun 0..5\n",
         "dae.sim": "x' = -v\n0 = v - 2*x\nx(0) = 1\nunknown v = 2\nrun 0..1\n",
         "bazykin.sim": "param alpha = 0.3\nparam delta = 0.2\nlet eaten = x*y/(1 + alpha*x)\nx' = x - eaten - 0.01*x^2\n"
@@ -336,6 +359,7 @@ with tempfile.TemporaryDirectory() as folder:
     verbs = verbs_without_a_model()
     live_view()
     exit_codes_are_the_same_for_all_verbs()
+    an_interrupt_is_answered()
     standard_input()
     numbers_read_back()
     for verb in set(verbs) - seen_verbs:
