@@ -150,8 +150,9 @@ class Session {
   Scene scene_;
 
   std::uint32_t run_ = 0;
-  double state_said_ = -1e300;  // when
-  bool takes_long_ = false;     // the motion of the last turn, which was that of a heavy step
+  double state_said_ = -1e300;         // when
+  std::optional<double> played_at_{};  // the wall time of the last turn, if it played
+  bool takes_long_ = false;            // a turn that plays, which is one of a heavy step
 };
 
 }  // namespace continuo::live

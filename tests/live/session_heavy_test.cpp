@@ -66,6 +66,14 @@ TEST(LiveHeavy, AChangeIsAnsweredBeforeTheNextStep) {
   ASSERT_FALSE(states.empty());
   EXPECT_EQ(states.front()["parameters"]["k"], 1.25);
   EXPECT_EQ(states.front()["history"][1], before);
+  stage.session->pause();
+  stage.session->turn();
+  const double paused = stage.session->history().last_time();
+  stage.session->play();
+  stage.audience.texts.clear();
+  stage.session->turn();
+  EXPECT_EQ(stage.audience.said("state").at(0)["playing"], true);
+  EXPECT_EQ(stage.audience.said("state").at(0)["history"][1], paused);
 }
 
 }  // namespace

@@ -183,17 +183,19 @@ void Session::pick(std::size_t body) {
 
 void Session::turn() {
   const double wall = now_();
-  if (takes_long_ && playback_.state_has_changed()) {  // who changed something does not wait for the next step as well
+  if (played_at_) takes_long_ = wall - *played_at_ > long_turn;
+  played_at_ = playing() ? std::optional(wall) : std::nullopt;
+  const auto is_due = [&] { return wall - state_said_ >= 0.1; };
+  if (playback_.state_has_changed() && (takes_long_ || is_due())) {  // who changed it does not wait for the next step
     publish();
     say_state();
   }
   const bool had_ghost = playback_.ghost() != nullptr;
   playback_.play_on(wall);
-  takes_long_ = now_() - wall > long_turn;
   if (had_ghost && !playback_.ghost()) interaction_.forget_ghost();
   drag_.watch(wall);
   publish();
-  if ((playback_.state_has_changed() || playing()) && wall - state_said_ >= 0.1) say_state();
+  if ((playback_.state_has_changed() || playing()) && is_due()) say_state();
 }
 
 void Session::publish() {
