@@ -62,6 +62,7 @@ def in_the_command():
     check("run", "good.sim", "--method", "dop", has=["dop853", "dop853_radau"], has_not=["rk4"])
     check("run", "good.sim", "--method=rk", has=["--method=rk4"])
     check("compare", "good.sim", "--methods", "rk4,eul", exactly=[])
+    check("view", "good.sim", "--viewers", "", exactly=["watch", "own"])
     check("compare", "good.sim", "--methods", "rk4,explicit", exactly=["rk4,explicit_euler"])
     check("stability", "ver", has=["verner7", "verner9"])
     check("run", "good.sim", "--set", "", exactly=["k=", "cut="])

@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -119,6 +121,10 @@ class Completion {
       return offer_names(is_recording ? Names::files : known->names, known->has_equals);
     }
     if (option->value == "FILE" || option->value == "PATH") offer_names(Names::files, false);
+    if (option->value.find('|') == std::string::npos) return;
+    // All that there are, watch|own, before what the parser says of them.
+    std::istringstream words(option->value.substr(0, option->value.find(':')));
+    for (std::string word; std::getline(words, word, '|');) offer({word});
   }
 
   void offer_names(Names names, bool has_equals) {
