@@ -301,6 +301,14 @@ def standard_input():
     recording = subprocess.run([continuo, "replay", "-", "--json"], stdin=open("cradle.run", "rb"), capture_output=True)
     if json.loads(recording.stdout)["state"] != answer(["replay", "cradle.run"])["state"]:
         fail("a recording from standard input is another one")
+    rows = "t,x,x'\n0,0.25,0\n"
+    begun = answer(["run", "good.sim", "--initial-from", "-", "--until", "0"], stdin=rows)
+    if begun.get("state", {}).get("x") != 0.25:
+        fail("--initial-from - begins elsewhere:", begun)
+    for words in (["new", "-"], ["view", "good.sim", "--record", "-"]):
+        answer(words, 1, layout="continuo.failure/1")
+        if os.path.exists("-") or os.path.exists("-.sim"):
+            fail(words, "writes a file called -")
     for words in (["run", "good.sim", "-o", "-"], ["run", "good.sim", "--manifest", "-"]):
         answer(words, 1, layout="continuo.failure/1")  # two things for standard output
 

@@ -7,11 +7,9 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
-#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
-#include <continuo/results/measurements.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
 
@@ -87,15 +85,8 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
   }
   if (!options.guess.empty()) {
     if (!readable(options.guess)) return std::nullopt;
-    auto read = options.guess == standard_input
-                    ? results::parse_measurements(contents_of(options.guess), name_of_file(options.guess))
-                    : results::read_measurements(options.guess);
-    if (!read) {
-      say(read.status().message);
-      return std::nullopt;
-    }
-    if (read->has_decimal_commas)
-      mention(fmt::format("{} has decimal commas: 1,5 is read as 1.5", name_of_file(options.guess)));
+    auto read = measurements_in(options.guess);
+    if (!read) return std::nullopt;
     request.guess = {.name = std::move(read->file),
                      .columns = std::move(read->columns),
                      .times = std::move(read->times),

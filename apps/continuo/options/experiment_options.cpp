@@ -114,11 +114,8 @@ bool is_quantity(const model::Model& model, const std::string& column) {
 bool read_initial_table(const model::Model& model, const std::string& text, model::Overrides& values) {
   const auto [file, time] = file_and_time(text);
   if (!readable(file)) return false;
-  const auto table = results::read_measurements(file);
-  if (!table) {
-    say(table.status().message);
-    return false;
-  }
+  const auto table = measurements_in(file);
+  if (!table) return false;
   const auto row = row_at(*table, time);
   if (!row) return false;
   std::vector<std::string> unknown;

@@ -111,6 +111,9 @@ class Files {
 
   static std::string fault_of_place(const NamedFile& file, const FileOption& option) {
     if (option.use == Use::written_as_table) return results::check_table(file.path).message;
+    if (option.use == Use::written_as_pictures && file.path == "-")
+      return fmt::format("{} takes the name of a folder or of a film; pictures do not go to standard output",
+                         file.role);
     if (option.use == Use::written_as_pictures && file.is_folder_of_pictures) return {};
     const bool has_ending =
         option.endings.empty() || file.place.kind == FilePlace::Kind::stream || file.place.descriptor ||

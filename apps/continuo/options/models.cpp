@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/terminal/answer.hpp>
@@ -88,6 +89,17 @@ model::Loaded load_model(model::Source source, const model::CheckOptions& option
   model::Loaded loaded = model::load(std::move(source), options);
   show(loaded.diagnostics, loaded.source);
   return loaded;
+}
+
+std::optional<results::Measurements> measurements_in(const std::string& file) {
+  auto read = file == standard_input ? results::parse_measurements(contents_of(file), name_of_file(file))
+                                     : results::read_measurements(file);
+  if (!read) {
+    say(read.status().message);
+    return std::nullopt;
+  }
+  if (read->has_decimal_commas) mention(fmt::format("{} has decimal commas: 1,5 is read as 1.5", name_of_file(file)));
+  return *std::move(read);
 }
 
 ModelFiles find_models(const std::vector<std::string>& files_and_folders) {

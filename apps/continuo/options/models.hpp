@@ -1,12 +1,14 @@
 // apps/continuo/options/models.hpp
 // Reading models for the verbs: what is wrong with them goes to standard error.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <continuo/language/load.hpp>
+#include <continuo/results/measurements.hpp>
 
 namespace continuo::app {
 
@@ -23,6 +25,9 @@ std::string name_of_file(const std::string& path);
 /// or with `usage` where the file cannot be read.
 model::Loaded load_model(const std::string& path, const model::CheckOptions& options = {});
 model::Loaded load_model(model::Source source, const model::CheckOptions& options = {});
+
+/// A table of measurements, of standard input too. Says what is wrong with it, and how its numbers are read.
+std::optional<results::Measurements> measurements_in(const std::string& file);
 
 /// The .sim files of a list of files and folders, in order; says which are not there.
 struct ModelFiles {

@@ -10,7 +10,6 @@
 #include <apps/continuo/studies/fit_request.hpp>
 #include <apps/continuo/studies/fit_units.hpp>
 #include <apps/continuo/studies/influences.hpp>
-#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
@@ -87,14 +86,8 @@ class FitRequestReader {
  private:
   bool read_data() {
     for (const std::string& file : options_.data) {
-      auto read = file == standard_input ? results::parse_measurements(contents_of(file), name_of_file(file))
-                                         : results::read_measurements(file);
-      if (!read) {
-        say(read.status().message);
-        return false;
-      }
-      if (read->has_decimal_commas)
-        mention(fmt::format("{} has decimal commas: 1,5 is read as 1.5", name_of_file(file)));
+      auto read = measurements_in(file);
+      if (!read) return false;
       std::error_code error;
       for (const studies::FitData& other : request_.data)
         if (other.measurements.file == file || std::filesystem::equivalent(other.measurements.file, file, error)) {

@@ -190,6 +190,10 @@ struct NewModel {
 };
 
 ExitCode write_starter(const NewModel& wanted) {
+  if (wanted.name == "-") {
+    say("new takes the name of the model's file, and does not write to standard output");
+    return usage;
+  }
   std::filesystem::path path(wanted.name);
   if (path.extension() != ".sim") path += ".sim";
   if (std::filesystem::exists(path)) {
