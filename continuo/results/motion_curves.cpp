@@ -8,6 +8,7 @@
 #include <continuo/language/world.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/motion_curves.hpp>
+#include <continuo/solve/catalogue.hpp>
 
 namespace continuo::results {
 namespace {
@@ -276,6 +277,8 @@ void MotionCurves::prepare(const model::Plan& plan, std::size_t states) {
   from_ = plan.from;
   to_ = plan.to;
   if (plan.output == model::OutputPlan::Kind::logarithmic) first_ = plan.first;
+  const MethodInfo* const method = find_method(plan.method);
+  is_straight_ = method != nullptr && method->dense_order == 1;
   for (Quantity& quantity : quantities_)
     if (quantity.kind == Quantity::Kind::time && plan.output == model::OutputPlan::Kind::logarithmic)
       quantity.logarithmic = true;  // so are the axes of its pictures
@@ -315,6 +318,7 @@ void MotionCurves::on_piece(double to, const At& at) {
   ++pieces_;
   if (pieces_ < 64 || pieces_ % 64 == 0) see_tolerances(end, X(x_));
   take_profiles(to, at);
+  if (is_straight_) return append(end);
   follow(begin, end, at, 0);
 }
 

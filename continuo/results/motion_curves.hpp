@@ -8,6 +8,9 @@
 // A curve is known to a pixel of the range that it has had so far, which is a part of the range that it will have:
 // where the picture turns out larger, there are more points than it takes, never fewer. Points that no picture shows
 // are left out from time to time, so that a long motion takes no more memory than a short one.
+//
+// A method whose dense output is of the first order (Euler's methods, the implicit midpoint rule) knows no more of the
+// motion between two steps than a straight line does: there the line goes straight from step to step.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -150,7 +153,7 @@ class MotionCurves final : public model::MotionWatcher {
   X x_;
   double from_ = 0, to_ = 0, first_ = 0;  // first_: of rows at logarithmic times
   std::size_t pieces_ = 0, budget_ = 0;
-  bool was_asked_ = false, shows_drift_ = true;
+  bool was_asked_ = false, shows_drift_ = true, is_straight_ = false;  // is_straight_: between two steps
 };
 
 }  // namespace continuo::results

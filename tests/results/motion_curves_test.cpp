@@ -132,6 +132,50 @@ TEST(MotionCurves, ConstantAccelerationIsAParabolaInTheFile) {
   }
 }
 
+// Of an oscillator in steps of 1/2, rows and looks at a tenth of it: the steps by the formulas on the blackboard, and
+// nothing between them. The energy, which straight lines between positions and velocities would let sag, is as
+// straight.
+TEST(MotionCurves, MethodsOfTheFirstOrderAreDrawnStraightFromStepToStep) {
+  struct State {
+    double x, v;
+  };
+  using Step = std::function<State(State, double)>;
+  const std::pair<const char*, Step> methods[] = {
+      {"explicit_euler", [](State s, double h) { return State{s.x + h * s.v, s.v - h * s.x}; }},
+      {"semi_implicit_euler",
+       [](State s, double h) {
+         const double v = s.v - h * s.x;
+         return State{s.x + h * v, v};
+       }},
+      {"symplectic_euler_position_first",
+       [](State s, double h) {
+         const double x = s.x + h * s.v;
+         return State{x, s.v - h * x};
+       }},
+      {"implicit_euler",
+       [](State s, double h) {
+         const double v = (s.v - h * s.x) / (1 + h * h);
+         return State{s.x + h * v, v};
+       }},
+  };
+  for (const auto& [method, step] : methods) {
+    Followed followed =
+        follow(fmt::format("x'' = -x\nx(0) = 1\nx'(0) = 0\nplot x\nplot (x^2 + x'^2)/2\n"
+                           "run 0..10, output 0.05, method {}, step 0.5\n",
+                           method));
+    const Path position = followed.curves->curves_of(0).front().path,
+               energy = followed.curves->curves_of(1).front().path;
+    ASSERT_THAT(position.x, SizeIs(21)) << method;
+    ASSERT_THAT(energy.x, SizeIs(21)) << method;
+    State state{1, 0};
+    for (std::size_t n = 0; n <= 20; ++n, state = step(state, 0.5)) {
+      EXPECT_EQ(position.x[n], 0.5 * static_cast<double>(n)) << method;
+      EXPECT_NEAR(position.y[n], state.x, 1e-7) << method;
+      EXPECT_NEAR(energy.y[n], (state.x * state.x + state.v * state.v) / 2, 1e-5) << method;
+    }
+  }
+}
+
 // Oscillators with random frequencies and amplitudes that are put elsewhere twice: over time and in the plane.
 TEST(MotionCurves, RandomMotionsLieWithinAPixelOfTheirClosedFormsAndJumpsStandUpright) {
   std::mt19937 random(20);
