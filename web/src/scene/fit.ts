@@ -66,7 +66,10 @@ export function boundsOfItems(items: readonly Item[], scene: Float32Array, up: 1
     } else {
       include(bounds, x, y, z, item.shape === "ball" ? Math.abs(numberOf(item, scene, "radius", 0)) : 0);
     }
-    if (item.numbers["to"] !== undefined && item.shape !== "arrow") include(bounds, ...pointOf(item, scene, "to"));
+    if (item.numbers["to"] === undefined) continue;
+    const part = item.shape === "arrow" ? numberOf(item, scene, "scale", 1) : 1;
+    const to = pointOf(item, scene, "to");
+    include(bounds, x + part * (to[0] - x), y + part * (to[1] - y), z + part * (to[2] - z));
   }
   // A floor is as wide as the picture; its height belongs into it, if anything stands there.
   for (const item of items) {
@@ -126,6 +129,24 @@ export class Interest {
 export function heightFor(bounds: Bounds, aspect: number, margin = 1.16): number {
   const height = Math.max(extent(bounds, 1), extent(bounds, 0) / aspect) * margin;
   return height > 0 && Number.isFinite(height) ? height : 1;
+}
+
+type Vector = readonly [number, number, number];
+const product = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+/**
+ * How far from the middle of the bounds the eye has to be for a picture that holds their corners with a margin. `back`,
+ * `right` and `above` are the directions of the picture, of length 1, `back` towards the eye; `tangent` is that of half
+ * the angle that it shows upwards.
+ */
+export function distanceFor(bounds: Bounds, back: Vector, right: Vector, above: Vector, tangent: number, aspect: number, margin = 1.1): number {
+  let distance = 0;
+  for (let corner = 0; corner < 8; ++corner) {
+    const from = [0, 1, 2].map((axis) => ((corner >> axis) & 1 ? 0.5 : -0.5) * extent(bounds, axis)) as unknown as Vector;
+    const aside = Math.max(Math.abs(product(from, right)) / aspect, Math.abs(product(from, above)));
+    distance = Math.max(distance, product(from, back) + (margin * aside) / tangent);
+  }
+  return distance > 0 && Number.isFinite(distance) ? distance : 1;
 }
 
 /**

@@ -1,7 +1,7 @@
 // Camera, lights and the ways to move them. Draws only when something has changed.
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { centre, centreHeight, extent, heightFor, type Bounds } from "./fit";
+import { centre, centreHeight, distanceFor, heightFor, type Bounds } from "./fit";
 import { Surface } from "./surface";
 
 const fov = 35;
@@ -128,9 +128,11 @@ export class Stage {
       this.setFrustum();
       return Math.abs(Math.log(height / this.viewHeight)) > 0.002 || target.distanceTo(goal) > 0.001 * height;
     }
-    const radius = Math.max(1e-9, Math.hypot(extent(bounds, 0), extent(bounds, 1), extent(bounds, 2)) / 2);
-    const wanted = (0.95 * radius) / Math.sin(((fov / 2) * Math.PI) / 180) / Math.min(1, aspect);
     const way = this.camera.position.clone().sub(target);
+    const back = way.clone().normalize();
+    const right = this.camera.up.clone().cross(back).normalize();
+    const above = back.clone().cross(right);
+    const wanted = distanceFor(bounds, back.toArray(), right.toArray(), above.toArray(), Math.tan(((fov / 2) * Math.PI) / 180), aspect);
     if (wanted > way.length()) part = 1;
     const distance = way.length() * (wanted / way.length()) ** part;
     target.lerp(goal, follow ? 1 : part);

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/curves";
-import { boundsOfItems, gridStep, heightFor, Interest } from "../../src/scene/fit";
+import { boundsOfItems, distanceFor, gridStep, heightFor, Interest, type Bounds } from "../../src/scene/fit";
 import { boxOfWalls } from "../../src/scene/bodies";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
@@ -14,6 +14,36 @@ test("the bounds hold balls with their radius, boxes, both ends of springs, and 
   const bounds = boundsOfItems(items, Float32Array.of(0, 5, 10, 1, -7));
   expect(bounds.lower.slice(0, 2)).toEqual([-7, 0]);
   expect(bounds.upper.slice(0, 2)).toEqual([6, 11]);
+});
+
+test("the bounds hold an arrow to its tip, which its scale moves", () => {
+  const bounds = boundsOfItems([item("arrow", { at: [0, 1], to: [2, 3], scale: 4 })], Float32Array.of(1, 1, 3, 5, 0.5));
+  expect(bounds.lower.slice(0, 2)).toEqual([1, 1]);
+  expect(bounds.upper.slice(0, 2)).toEqual([2, 3]);
+});
+
+// Each corner of random boxes, seen by the formulas of a perspective picture, is in it, and one is near its frame.
+test("in space the picture holds the corners of the bounds, closely", () => {
+  let seed = 7;
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let trial = 0; trial < 200; ++trial) {
+    const size = [random(), random(), random()];
+    const bounds: Bounds = { lower: [1, 2, 3], upper: [1 + size[0]!, 2 + size[1]!, 3 + size[2]!] };
+    const [turn, rise, aspect, tangent] = [6.28 * random(), 1.5 * (2 * random() - 1), 0.4 + 2 * random(), 0.1 + random()];
+    const back = [Math.cos(rise) * Math.cos(turn), Math.cos(rise) * Math.sin(turn), Math.sin(rise)] as const;
+    const right = [-Math.sin(turn), Math.cos(turn), 0] as const;
+    const above = [-Math.sin(rise) * Math.cos(turn), -Math.sin(rise) * Math.sin(turn), Math.cos(rise)] as const;
+    const distance = distanceFor(bounds, back, right, above, tangent, aspect, 1);
+    let nearest = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const from = size.map((extent, axis) => ((corner >> axis) & 1 ? 0.5 : -0.5) * extent);
+      const along = (axis: readonly number[]) => from.reduce((sum, value, i) => sum + value * axis[i]!, 0);
+      const depth = distance - along(back);
+      expect(depth).toBeGreaterThan(0);
+      nearest = Math.max(nearest, Math.abs(along(right)) / (depth * tangent * aspect), Math.abs(along(above)) / (depth * tangent));
+    }
+    expect(nearest).toBeCloseTo(1, 9);
+  }
 });
 
 test("what is not finite is left out of the picture", () => {
