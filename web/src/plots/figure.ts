@@ -4,7 +4,7 @@ import { formatName, formatNumber, withUnit } from "../format";
 import type { History } from "../history";
 import { curveColor, type Theme } from "../palette";
 import type { Session } from "../session";
-import { calm, decades, equalScales, finiteRange, powersBetween, timeWindow, type Range } from "./range";
+import { atLeast, calm, decades, equalScales, finiteRange, leastDrift, powersBetween, timeWindow, type Range } from "./range";
 import type { PlotSpec } from "./specs";
 
 export interface Look {
@@ -83,7 +83,9 @@ export class Figure {
       }
     });
     for (const unit of this.units) {
-      const range = ranges.get(unit);
+      const data = ranges.get(unit);
+      const isDrift = spec.id === "drift" && (unit === "" || unit === "1");
+      const range = data && isDrift ? atLeast(data, leastDrift(this.session.state?.rtol ?? null)) : data;
       if (range) this.ranges.set(unit, this.logarithmic ? decades(range) : calm(this.ranges.get(unit) ?? null, range));
     }
     if (spec.against) {

@@ -15,10 +15,19 @@ export function finiteRange(values: ArrayLike<number>, begin: number, end: numbe
   return low <= high ? [low, high] : null;
 }
 
-/** The data's range with a margin; around a constant, a little on both sides. */
+/** The range, or one of the extent `least` about its middle where it is smaller: what nobody has computed is not magnified. */
+export function atLeast([low, high]: Range, least: number): Range {
+  const more = (least - (high - low)) / 2;
+  return more > 0 ? [low - more, high + more] : [low, high];
+}
+
+/** What the axis of an energy's relative drift shows at least: a thousand tolerances, as in the pictures of `--plot`. */
+export const leastDrift = (rtol: number | null): number => 1000 * (rtol ?? 1e-12);
+
+/** The data's range with a margin; around a constant, which single precision makes uneven, a little on both sides. */
 export function padded([low, high]: Range, margin = 0.06): Range {
   const span = high - low;
-  if (span > 1e-9 * Math.max(Math.abs(low), Math.abs(high))) return [low - margin * span, high + margin * span];
+  if (span > 1e-6 * Math.max(Math.abs(low), Math.abs(high))) return [low - margin * span, high + margin * span];
   const around = Math.abs(high) > 0 ? 0.1 * Math.abs(high) : 1;
   return [low - around, high + around];
 }
