@@ -81,7 +81,7 @@ export class Transport {
     }
     setText(this.reached, state.playing ? `reached ${formatReached(state.reached, state.target)}` : state.ended ? "ended" : "paused");
     this.slow.hidden = !(state.slow && state.playing);
-    if (state.slow) setText(this.slow, `Too slow for ${formatSpeed(state.target)}: this model runs at ${formatReached(state.reached, state.target)} here`);
+    if (state.slow) setText(this.slow, this.slow.title = `Too slow for ${formatSpeed(state.target)}: this model runs at ${formatReached(state.reached, state.target)} here`);
     this.line.min = String(state.history[0]);
     this.line.max = String(Math.max(state.history[1], state.history[0]));
     this.showTime(this.session.frame?.t ?? state.t);
