@@ -1,14 +1,14 @@
 // npm run thumbnails: makes the small pictures of the gallery from the models, by the page itself. Needs Chromium and
 // the command (CONTINUO_COMMAND, by default ../build/continuo); names of models after -- make those alone.
 import { spawn } from "node:child_process";
-import { existsSync, mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const models = path.join(here, "../models");
-const folder = path.join(here, "src/thumbnails");
+const file = path.join(here, "src/thumbnails.json");
 const command = process.env.CONTINUO_COMMAND ?? path.join(here, "../build/continuo");
 const executablePath = [process.env.CONTINUO_BROWSER, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((place) => place && existsSync(place));
 const size = { width: 192, height: 120 };
@@ -41,6 +41,13 @@ const draw = ({ width, height }) => {
   const [left, right] = range(finite(along));
   const [low, high] = range(ways.flatMap((values) => [...finite(values)]));
   const colors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"];
+  context.strokeStyle = "#8996a3";
+  context.lineWidth = 1;
+  context.beginPath();
+  context.moveTo(5.5, 6);
+  context.lineTo(5.5, height - 6.5);
+  context.lineTo(width - 6, height - 6.5);
+  context.stroke();
   ways.forEach((values, index) => {
     context.beginPath();
     values.forEach((value, row) => context.lineTo(8 + ((width - 16) * (along[row] - left)) / (right - left || 1), height - 10 - ((height - 20) * (value - low)) / (high - low || 1)));
@@ -53,11 +60,11 @@ const draw = ({ width, height }) => {
 
 const wanted = process.argv.slice(2);
 const gallery = await page.evaluate(() => globalThis.continuo.session.model.gallery.map(({ name }) => name));
-mkdirSync(folder, { recursive: true });
-for (const file of readdirSync(folder)) if (wanted.length === 0 && !gallery.includes(file.replace(".webp", ""))) rmSync(path.join(folder, file));
+const before = existsSync(file) ? JSON.parse(readFileSync(file, "utf8")) : {};
+const pictures = Object.fromEntries(Object.entries(before).filter(([name]) => gallery.includes(name)));
 for (const name of wanted.length > 0 ? wanted : gallery) {
   await page.evaluate((model) => globalThis.continuo.session.send({ do: "open", model }), name);
-  await page.waitForFunction((model) => globalThis.continuo.session.model.path.endsWith(`/${model}.sim`) && globalThis.continuo.session.state, name, { timeout: 60000 });
+  await page.waitForFunction((model) => globalThis.continuo.session.model.path.split("/").at(-1) === `${model}.sim` && globalThis.continuo.session.state, name, { timeout: 60000 });
   // A third of the run in two seconds; what takes longer is taken as it is after six.
   await page.evaluate(() => {
     const { session } = globalThis.continuo;
@@ -72,9 +79,9 @@ for (const name of wanted.length > 0 ? wanted : gallery) {
   }, null, { timeout: 6000 }).catch(() => undefined);
   await page.evaluate(() => globalThis.continuo.session.send({ do: "pause" }));
   await page.waitForTimeout(300);
-  const picture = Buffer.from((await page.evaluate(draw, size)).split(",")[1], "base64");
-  writeFileSync(path.join(folder, `${name}.webp`), picture);
-  console.log(`${name}: ${picture.length} bytes`);
+  pictures[name] = await page.evaluate(draw, size);
+  console.log(`${name}: ${pictures[name].length} bytes`);
 }
+writeFileSync(file, `${JSON.stringify(pictures, Object.keys(pictures).sort(), 1)}\n`);
 await browser.close();
 view.kill("SIGINT");
