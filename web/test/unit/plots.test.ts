@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { csv } from "../../src/plots/export";
-import { calm, decades, equalScales, finiteRange, padded, powersBetween, timeWindow } from "../../src/plots/range";
+import { atLeast, calm, decades, equalScales, finiteRange, leastDrift, padded, powersBetween, timeWindow } from "../../src/plots/range";
 import { defaultSpecs, distanceSpec, energiesOf, specFromText, specText } from "../../src/plots/specs";
 import { History } from "../../src/history";
 import type { Column } from "../../src/protocol";
@@ -91,4 +91,16 @@ test("a table has units in its heading and quotes what needs it", () => {
   history.append({ rewound: false, t: 0, rowTimes: Float64Array.of(0, 0.5), rows: Float32Array.of(1, 2, 3, 0.1), ghostRows: null });
   const table = csv(history, [{ name: "a,b", unit: "m", kind: "state" }, { name: "c", unit: "1", kind: "state" }], [0, 1], "s");
   expect(table).toBe('t [s],"a,b [m]",c\n0,1,2\n0.5,3,0.100000001\n');
+});
+
+test("the drift of a conserved energy is a level line, and that of one that grows fills its axis", () => {
+  const least = leastDrift(1e-10);
+  const [low, high] = atLeast([-2e-12, 3e-12], least);
+  expect(high - low).toBeCloseTo(1e-7, 12);
+  expect((low + high) / 2).toBeCloseTo(5e-13, 18);
+  expect(atLeast([0, 0.3], least)).toEqual([0, 0.3]);
+  expect(leastDrift(null)).toBeCloseTo(1e-9, 15);
+  // Of a constant in single precision, a unit in the last place up and down.
+  const [bottom, top] = padded([6545, Math.fround(6545 * (1 + 2 ** -22))]);
+  expect(top - bottom).toBeGreaterThan(100);
 });
