@@ -105,6 +105,7 @@ void append_panels(const DrawnPlot& plot, const std::vector<double>& marks, std:
     if (plot.against_time) panel.marks = marks;
     panel.logarithmic_x = plot.logarithmic_x;
     panel.logarithmic_y = plot.logarithmic_y;
+    panel.tall = !plot.against_time;
     panel.equal_scale = deserves_equal_scale(plot, panel);
     std::ranges::move(jumps, std::back_inserter(panel.curves));
     panels.push_back(std::move(panel));
