@@ -29,6 +29,7 @@ inline double nearness_of(double x, double y, double z) {
 /// The part of the plane that is shown.
 struct PictureFrame {
   double left = std::numeric_limits<double>::infinity(), right = -left, low = left, high = -left;
+  double floor = left;  // the lowest that a scene in the plane has
 
   void take(Flat p, double around) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return;

@@ -28,12 +28,17 @@ Status unwritable(std::string message) {
   return {.ending = Ending::unwritable, .message = std::move(message)};
 }
 
-/// With a margin, and square, so that what moves along a line has room to move.
-PictureFrame with_margin(PictureFrame frame) {
-  const double size = std::max({frame.right - frame.left, frame.high - frame.low, 1e-9});
-  frame.take({(frame.left + frame.right) / 2, (frame.low + frame.high) / 2}, size / 2);
-  const double margin = 0.08 * size;
-  frame.left -= margin, frame.right += margin, frame.low -= margin, frame.high += margin;
+/// With a margin, and as wide and high as the picture, so that what moves along a line has room to move. What is left
+/// over upwards goes above a floor on which the scene stands, as on the page.
+PictureFrame with_margin(const PictureFrame& scene) {
+  constexpr double aspect = static_cast<double>(width) / height, margin = 1.16, below_floor = 0.14;
+  const double high = margin * std::max({scene.high - scene.low, (scene.right - scene.left) / aspect, 1e-9});
+  const double middle = (scene.left + scene.right) / 2;
+  PictureFrame frame = scene;
+  frame.left = middle - aspect * high / 2, frame.right = middle + aspect * high / 2;
+  frame.low = (scene.low + scene.high - high) / 2;
+  if (scene.low >= scene.floor - 0.02 * high) frame.low = std::max(frame.low, scene.floor - below_floor * high);
+  frame.high = frame.low + high;
   return frame;
 }
 

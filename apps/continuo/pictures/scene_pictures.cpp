@@ -265,7 +265,9 @@ void take_scene(const live::LiveModel& shown, const Recorder::Slices& slices, Pi
       for (const char* name : {"at", "to"}) {
         if (const auto p = drawn.point(item, name, k)) frame.take(*p, around);
       }
-      if (item.shape == model::Shape::floor) frame.low = std::min(frame.low, drawn.value(item, "height", k, 0));
+      if (item.shape != model::Shape::floor) continue;
+      frame.floor = std::min(frame.floor, drawn.value(item, "height", k, 0));
+      frame.low = std::min(frame.low, frame.floor);
     }
   }
 }
