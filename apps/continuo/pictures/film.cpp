@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <apps/continuo/pictures/film.hpp>
@@ -96,12 +97,14 @@ ExitCode write_film(const std::string& path, double rate, const live::Session& s
     return usage;
   }
   const std::string folder = scratch.file("pictures"), part = path + ".part";
-  Progress progress;
-  const Status drawn = draw_pictures(folder, session, slices, progress.parts(0, share_of_drawing));
+  std::optional<Progress> progress(std::in_place);
+  const Status drawn = draw_pictures(folder, session, slices, progress->parts(0, share_of_drawing));
+  if (!drawn) progress.reset();  // its line goes before the message comes
   if (!written(drawn)) return drawn.ending == Ending::interrupted ? interrupted : usage;
   ExitCode exit = ending_of(path) == ".gif" ? write_gif(part, rate, folder, slices.size(),
-                                                        progress.parts(share_of_drawing, 1 - share_of_drawing))
+                                                        progress->parts(share_of_drawing, 1 - share_of_drawing))
                                             : write_mp4(part, rate, folder);
+  progress.reset();
   std::error_code error;
   if (exit == done) std::filesystem::rename(part, path, error);
   if (error) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <apps/continuo/pictures/film.hpp>
 #include <apps/continuo/pictures/pictures.hpp>
@@ -79,8 +81,9 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   if (!request.page.empty()) exit = write_page(request.page, page, recorder);
   if (exit != done || request.pictures.empty()) return exit;
   if (film) return write_film(request.pictures, request.rate, session, recorder.slices());
-  Progress progress;
-  const Status status = draw_pictures(request.pictures, session, recorder.slices(), progress.parts());
+  std::optional<Progress> progress(std::in_place);  // its line goes before a message comes
+  const Status status = draw_pictures(request.pictures, session, recorder.slices(), progress->parts());
+  progress.reset();
   return written(status) ? done : status.ending == Ending::interrupted ? interrupted : usage;
 }
 
