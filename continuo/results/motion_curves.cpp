@@ -211,7 +211,10 @@ bool MotionCurves::bends(const Instant& a, const Instant& middle, const Instant&
     const double ax = of(a, track.x, pixels_across), ay = of(a, track.y, pixels_upwards);
     const double mx = of(middle, track.x, pixels_across) - ax, my = of(middle, track.y, pixels_upwards) - ay;
     const double bx = of(b, track.x, pixels_across) - ax, by = of(b, track.y, pixels_upwards) - ay;
-    const bool gaps[] = {!std::isfinite(ax + ay), !std::isfinite(mx + my), !std::isfinite(bx + by)};
+    const auto is_gap = [&](const Instant& instant) {
+      return !std::isfinite(place(track.x, instant.values[track.x]) + place(track.y, instant.values[track.y]));
+    };
+    const bool gaps[] = {is_gap(a), is_gap(middle), is_gap(b)};
     if (gaps[0] && gaps[1] && gaps[2]) continue;
     if (gaps[0] || gaps[1] || gaps[2]) return true;
     const double square = bx * bx + by * by;

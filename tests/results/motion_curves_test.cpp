@@ -250,6 +250,27 @@ TEST(MotionCurves, AnExpressionThatJumpsWithinAStepStandsUpright) {
   EXPECT_EQ(*std::ranges::max_element(path.y), 3);
 }
 
+// The square root of a number that comes out of the negative ones, and of one that goes there: half a run has values.
+TEST(MotionCurves, AnExpressionIsDrawnFromWhereAndToWhereItHasValues) {
+  for (const bool begins : {true, false}) {
+    const char* const expression = begins ? "sqrt(x - 1)" : "sqrt(1 - x)";
+    Followed followed = follow(fmt::format("x' = 1\nx(0) = 0\nplot {}\nrun 0..2, output 1\n", expression));
+    const Path path = followed.curves->curves_of(0).front().path;
+    Path values;
+    for (std::size_t i = 0; i < path.x.size(); ++i)
+      if (std::isfinite(path.y[i])) values.x.push_back(path.x[i]), values.y.push_back(path.y[i]);
+    ASSERT_GT(values.x.size(), 20u);
+    const Screen screen(values);
+    std::vector<Pixel> root;
+    for (int k = 0; k <= 2000; ++k) {
+      const double height = k / 2000.0;
+      root.push_back(screen(begins ? 1 + height * height : 1 - height * height, height));
+    }
+    // The end is known to 2^-18 of a step, which is 2 at most; the root of that is 1.7 pixels of 600 high.
+    EXPECT_LT(apart(root, screen(values)), 1.7) << expression;
+  }
+}
+
 TEST(MotionCurves, AWatchedRunHasTheSameBits) {
   const std::string text =
       "h'' = -9.81\nh(0) = 10\nh'(0) = 0\nwhen h falls through 0 { h' := -0.8*h' }\nrun 0..5, output 0.1\n";
