@@ -158,7 +158,13 @@ std::vector<std::size_t> add_regions(const std::vector<Region>& regions, results
     if (region.x.empty() && up > 0) outline.x = {0, 0}, outline.y = {-up, up};
     if (outline.x.empty()) continue;
     panel.curves.push_back(std::move(outline));
-    if (!region.area_x.empty()) areas.push_back({"", region.area_x, region.area_y, color, area, false});
+    if (!region.area_x.empty())
+      areas.push_back({.label = "",
+                       .x = region.area_x,
+                       .y = region.area_y,
+                       .color = color,
+                       .style = area,
+                       .widens_axes = false});  // of an implicit method it has no end
     results::Curve points{.label = "", .x = {}, .y = {}, .color = color, .style = full_points};
     if (std::isfinite(region.real_limit) && region.real_limit > 0)
       points.x.push_back(-region.real_limit), points.y.push_back(0);
