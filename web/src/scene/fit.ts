@@ -139,7 +139,7 @@ const product = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[
  * `right` and `above` are the directions of the picture, of length 1, `back` towards the eye; `tangent` is that of half
  * the angle that it shows upwards.
  */
-export function distanceFor(bounds: Bounds, back: Vector, right: Vector, above: Vector, tangent: number, aspect: number, margin = 1.1): number {
+export function distanceFor(bounds: Bounds, back: Vector, right: Vector, above: Vector, tangent: number, aspect: number, margin = 1.04): number {
   let distance = 0;
   for (let corner = 0; corner < 8; ++corner) {
     const from = [0, 1, 2].map((axis) => ((corner >> axis) & 1 ? 0.5 : -0.5) * extent(bounds, axis)) as unknown as Vector;

@@ -36,7 +36,7 @@ test("ten minutes with the bouncing ball", async (t) => {
   assert.ok(level.values["energy"] > 0);
 
   const grip = await tab.evaluate(() => globalThis.continuo.app.scene.onPage([0, globalThis.continuo.session.frame.scene[2], 0]));
-  const top = await tab.evaluate(() => globalThis.continuo.app.scene.onPage([0, 9, 0]));
+  const top = await tab.evaluate(() => globalThis.continuo.app.scene.onPage([0, 9.5, 0]));  // of the ball's middle
   await tab.mouse.move(grip.x, grip.y);
   await tab.mouse.down();
   await tab.mouse.move(top.x, top.y, { steps: 6 });
