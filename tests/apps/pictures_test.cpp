@@ -1,9 +1,11 @@
 // What --plot draws and says, films, and the small picture in a terminal.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -185,6 +187,24 @@ TEST(Pictures, AFilmOfTheSceneIsAGifThatAnyoneCanDecode) {
   EXPECT_THAT(shell.run("run ball.sim --plot ball.gif --plot h").err, HasSubstr("shows the scene"));
 }
 
+// A mass on a long spring: the picture is higher than the scene, and what is left over is above the floor.
+TEST(Pictures, AFilmShowsLittleOfWhatIsBelowAFloor) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Shell shell;
+  shell.write("slide.sim",
+              "x' = 1\nx(0) = 0\ndraw { floor 0\nbox (x, 0.1) size (0.2, 0.2) color \"red\" }\nrun 0..4 realtime\n");
+  ASSERT_EQ(shell.run("run slide.sim --until 0.1 --plot slide.gif").exit, 0);
+  GifReader gif(shell.read("slide.gif"));
+  ASSERT_GE(gif.pictures(), 4);
+  std::size_t ground = 0;  // pixels of one column
+  for (std::size_t y = 0; y < gif.height; ++y) {
+    const auto [red, green, blue] = gif.color(gif.width / 4, y);
+    if (std::abs(red - 0xE6) < 5 && std::abs(green - 0xEA) < 5 && std::abs(blue - 0xF0) < 5) ++ground;
+  }
+  EXPECT_GT(ground, gif.height / 20);
+  EXPECT_LT(ground, gif.height / 5);
+}
+
 TEST(Pictures, AnInterruptedFilmLeavesWhatWasThere) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Shell shell;
@@ -201,6 +221,74 @@ std::string in_terminal(const Shell& shell, const std::string& variables, const 
       .call("env -u NO_COLOR -u TMUX -u TERM_PROGRAM TERM=xterm-256color LC_ALL=C.UTF-8 " + variables +
             " script -qec \"'" CONTINUO_COMMAND "' run orbit.sim " + options + "\" /dev/null")
       .out;
+}
+
+/// RFC 4648, section 4; nothing where it is broken.
+std::string from_base64(std::string_view text) {
+  static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  if (text.size() % 4 != 0) return {};
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  std::uint32_t waiting = 0;
+  unsigned count = 0;
+  for (const char c : text) {
+    const std::size_t digit = digits.find(c);
+    if (digit == std::string_view::npos) return {};
+    waiting = (waiting << 6U) | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>((waiting >> count) & 0xFFU);
+  }
+  return bytes;
+}
+
+void expect_png(const std::string& bytes) {
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(bytes.size() - std::min<std::size_t>(8, bytes.size()), 4), "IEND");
+}
+
+// https://sw.kovidgoyal.net/kitty/graphics-protocol: pieces of at most 4096 characters, all but the last of a multiple
+// of four and with m=1, the keys in the first.
+TEST(Pictures, KittyGetsAPictureInPiecesOfItsProtocol) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Shell shell;
+  shell.write("orbit.sim", orbit);
+  const std::string out = in_terminal(shell, "TERM=xterm-kitty", "");
+  std::string text;
+  std::size_t pieces = 0, end = 0;
+  bool is_last = false;
+  for (std::size_t at = out.find("\033_G"); at != std::string::npos; at = out.find("\033_G", end)) {
+    EXPECT_FALSE(is_last);
+    const std::size_t keys = at + 3, payload = out.find(';', at) + 1;
+    end = out.find("\033\\", at);
+    ASSERT_NE(end, std::string::npos);
+    const std::string said = "," + out.substr(keys, payload - 1 - keys) + ",";
+    is_last = said.find(",m=1,") == std::string::npos;
+    if (pieces++ == 0) {
+      EXPECT_THAT(said, AllOf(HasSubstr(",a=T,"), HasSubstr(",f=100,")));
+    }
+    EXPECT_LE(end - payload, 4096u);
+    EXPECT_TRUE(is_last || (end - payload) % 4 == 0) << pieces;
+    text += out.substr(payload, end - payload);
+  }
+  EXPECT_TRUE(is_last);
+  expect_png(from_base64(text));
+}
+
+// https://iterm2.com/documentation-images.html: the size is that of the decoded file.
+TEST(Pictures, ITermGetsAPictureWithItsSize) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Shell shell;
+  shell.write("orbit.sim", orbit);
+  const std::string out = in_terminal(shell, "TERM_PROGRAM=iTerm.app", "");
+  const std::size_t at = out.find("\033]1337;File="), colon = out.find(':', at), end = out.find('\a', at);
+  ASSERT_LT(colon, end);
+  ASSERT_NE(end, std::string::npos);
+  const std::string picture = from_base64(std::string_view(out).substr(colon + 1, end - colon - 1));
+  expect_png(picture);
+  EXPECT_THAT(out.substr(at, colon - at) + ";",
+              AllOf(HasSubstr("inline=1;"), HasSubstr("size=" + std::to_string(picture.size()) + ";")));
 }
 
 TEST(Pictures, ATerminalGetsASketchAndNothingElseDoes) {

@@ -2,6 +2,7 @@
 // bad questions.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -493,6 +494,17 @@ TEST(Explore, LooksForNothingWhereItCannotSee) {
   EXPECT_THAT(shell.run("explore clock.sim").out, HasSubstr("orbit       period 0.001,"));
   shell.write("none.sim", "let a = 1\nrun 0..1\n");
   EXPECT_NE(shell.run("explore none.sim").exit, 0);
+}
+
+// Implicit Euler's curve is the circle of radius 1 about 1, and its region all that is outside, which has no end.
+TEST(Stability, APictureOfRegionsIsAsLargeAsTheirCurves) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  const Shell shell;
+  ASSERT_EQ(shell.run("stability euler,implicit_euler --plot regions.svg").exit, 0);
+  const std::string picture = shell.read("regions.svg");
+  EXPECT_THAT(picture, HasSubstr(">2</text>"));
+  EXPECT_THAT(picture, Not(HasSubstr(">100</text>")));
+  EXPECT_THAT(picture, Not(HasSubstr(">50</text>")));
 }
 
 }  // namespace
