@@ -189,6 +189,11 @@ Status OutputFile::leave() {
   return status_;
 }
 
+void OutputFile::discard() {
+  unfinished_ = Unfinished::removed;
+  end(false);
+}
+
 std::string OutputFile::present_name() const {
   const std::filesystem::path present(present_name_), path(path_);
   const bool is_beside = !present.empty() && place_.path.filename() == path.filename();

@@ -18,7 +18,8 @@
 
 namespace continuo::results {
 
-/// What becomes of a file that is not closed as whole: of a table what is there is kept, other files are none.
+/// What becomes of a file that is not closed as whole: of a table or a recording what is there is kept, other files are
+/// none.
 enum class Unfinished { kept, removed };
 
 /// A file that is written from its beginning to its end, with a buffer of its own.
@@ -47,6 +48,8 @@ class OutputFile {
   Status close();
   /// Writes what is left, and keeps the file under its other name.
   Status leave();
+  /// Removes what was written: there is nothing in it that anybody wants.
+  void discard();
   /// Ends the writing for a reason of the caller's.
   void fail(const std::string& reason);
   /// The first failure so far, or a success.

@@ -65,7 +65,7 @@ TEST(Replay, GoesOnWithWhatWasInterrupted) {
   const Result interrupted = shell.run("run long.sim --record long.run",
                                        "sh -c '\"$@\" & sleep 3; kill -INT $!; sleep 0.02; kill -INT $!; wait $!' sh");
   EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
-  const Result kept = shell.run("replay long.run");
+  const Result kept = shell.run("replay long.unfinished.run");
   EXPECT_EQ(kept.exit, 130);
   EXPECT_THAT(kept.err, Not(HasSubstr("cut off")));
   EXPECT_THAT(kept.out, HasSubstr("to go on from"));
@@ -100,6 +100,9 @@ TEST(Replay, GoesOnWithEquations) {
     EXPECT_EQ(shell.run("resume cut.run -o b.csv").exit, 0);
     EXPECT_EQ(rows(shell.read("b.csv")), table);
   }
+  // A run that cannot begin leaves a recording of its name as it was.
+  EXPECT_EQ(shell.run("run ball.sim --method no_such_method --record ball.run").exit, 1);
+  EXPECT_EQ(shell.run("resume ball.run --max-steps 25").exit, 3);
   shell.write("push.csv", "t,push\n0,1\n1.1,3\n2.3,0\n");
   const Result changed = shell.run("resume ball.run");
   EXPECT_EQ(changed.exit, 1);
@@ -109,9 +112,12 @@ TEST(Replay, GoesOnWithEquations) {
 TEST(Replay, GoesOnWithEquationsAfterCtrlC) {
   const Shell shell;
   shell.write("long.sim", "x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..1e9 output 1e5 method rk4 step 0.01\n");
+  shell.write("long.run", "an older one");
   const Result interrupted = shell.run("run long.sim --record long.run", "timeout -s INT 2");
   EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
-  const Result kept = shell.run("replay long.run");
+  EXPECT_THAT(interrupted.err, HasSubstr("continuo resume long.unfinished.run"));
+  EXPECT_EQ(shell.read("long.run"), "an older one");
+  const Result kept = shell.run("replay long.unfinished.run");
   EXPECT_EQ(kept.exit, 130);
   EXPECT_THAT(kept.err, Not(HasSubstr("cut off")));
   EXPECT_THAT(kept.out, HasSubstr("to go on from"));

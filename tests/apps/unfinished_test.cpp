@@ -159,6 +159,39 @@ TEST_P(Killed, AtAnyTimeLeavesABeginningOfTheTable) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, Killed, testing::Values("csv", "nc", "json", "mat"));
 
+TEST(KilledRecording, IsReplayedAndResumed) {
+  for (const std::string model : {"swing.sim", "ball.sim"}) {
+    const Place place;
+    place.shell.write("ball.sim",
+                      "world {\n  gravity (0, -10)\n  wall floor (0, 1) at 0\n  material restitution 1\n"
+                      "  body ball at (0, 5.5)\n}\nrun 0..10000 output 1\n");
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(place.shell.run("run " + model + " --record whole.run -o whole.csv").exit, 0);
+    const auto duration = std::chrono::steady_clock::now() - begin;
+    const Rows whole = rows_of_text(place.shell.read("whole.csv"));
+    std::mt19937 random(23);
+    std::uniform_real_distribution<double> part(0.1, 1);
+    int partial = 0;
+    for (int time = 0; time < 6; ++time) {
+      for (const auto& entry : fs::directory_iterator(place.folder))
+        if (entry.path().filename().string().starts_with("out")) fs::remove(entry);
+      place.shell.write("out.run", "an older one");
+      Process process({"run", place.path(model), "--record", place.path("out.run")});
+      std::this_thread::sleep_for(duration * part(random));
+      process.send(SIGKILL);
+      (void)process.wait();
+      if (!place.shell.has("out.unfinished.run")) continue;
+      ASSERT_EQ(place.shell.read("out.run"), "an older one");
+      ++partial;
+      EXPECT_EQ(place.shell.run("replay out.unfinished.run -o out.csv").exit, 130);
+      expect_prefix(rows_of_text(place.shell.read("out.csv")), whole);
+      EXPECT_EQ(place.shell.run("resume out.unfinished.run -o out.csv").exit, 0);
+      EXPECT_EQ(rows_of_text(place.shell.read("out.csv")), whole);
+    }
+    EXPECT_GT(partial, 0) << model;
+  }
+}
+
 TEST(Interrupted, KeepsTheRowsUnderTheNameOfAnUnfinishedTable) {
   for (const std::string ending : {"csv", "tsv", "nc", "json", "mat"}) {
     const Place place;

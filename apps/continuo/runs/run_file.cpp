@@ -1,7 +1,6 @@
 // Adds --record, and writes and reads the file of a recording.
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <fstream>
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/file_options.hpp>
@@ -12,6 +11,23 @@
 #include <fmt/format.h>
 
 namespace continuo::app {
+
+OutputStream::OutputStream(const std::string& path) : std::ostream(nullptr), buffer_(path) {
+  rdbuf(&buffer_);
+}
+
+std::streamsize OutputStream::Buffer::xsputn(const char* bytes, std::streamsize count) {
+  file.write({bytes, static_cast<std::size_t>(count)});
+  return file.status() ? count : 0;
+}
+OutputStream::Buffer::int_type OutputStream::Buffer::overflow(int_type byte) {
+  const char letter = traits_type::to_char_type(byte);
+  return xsputn(&letter, 1) == 1 ? byte : traits_type::eof();
+}
+int OutputStream::Buffer::sync() {
+  file.flush();
+  return file.status() ? 0 : -1;
+}
 
 void add_record(CLI::App& verb, RecordTo& record) {
   auto* path = writes_file(verb, verb.add_option("--record", record.path, "Records the run, for replay and resume"));
@@ -32,19 +48,25 @@ runs::Log* RunFile::begin(const model::ModelProgram& program, model::RunHead hea
   if (!is_wanted()) return nullptr;
   head.version = CONTINUO_VERSION;
   head.data = checksum_of_tables(program);
-  file_.open(to_.path, std::ios::binary | std::ios::trunc);
-  if (!file_) return nullptr;
-  log_ = std::make_unique<runs::Log>(file_, program.model, head, to_.checkpoints);
+  out_.emplace(to_.path);
+  log_ = std::make_unique<runs::Log>(*out_, program.model, head, to_.checkpoints);
   return log_.get();
 }
 
-bool RunFile::close() {
-  if (!is_wanted()) return true;
-  const bool was_open = file_.is_open();
-  file_.close();
-  if (was_open && file_) return true;
-  say(fmt::format("cannot write {}: {}", to_.path, std::strerror(errno)));
-  return false;
+bool RunFile::finish(const model::Simulated& simulated) {
+  if (!out_) return true;
+  results::OutputFile& file = out_->file();
+  if (!simulated.run) {
+    file.discard();
+    return true;
+  }
+  const bool is_interrupted = simulated.run->outcome.ending == Ending::interrupted;
+  if (!written(is_interrupted ? file.leave() : file.close())) return false;
+  if (is_interrupted && !file.present_name().empty()) {
+    say(fmt::format("the recording is in {}{}", file.present_name(),
+                    to_.checkpoints > 0 ? "; it goes on by continuo resume " + file.present_name() : ""));
+  }
+  return true;
 }
 
 std::optional<runs::Recording> read_run(const std::string& path) {

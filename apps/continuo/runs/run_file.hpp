@@ -1,17 +1,37 @@
 // The recording of a run on disk, written as the run goes and read again.
 #pragma once
 #include <cstddef>
-#include <fstream>
 #include <memory>
 #include <optional>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
 
+#include <continuo/results/output_file.hpp>
 #include <continuo/runs/recording.hpp>
 
 namespace continuo::app {
+
+/// An output file as a stream.
+class OutputStream final : public std::ostream {
+ public:
+  explicit OutputStream(const std::string& path);
+  results::OutputFile& file() { return buffer_.file; }
+
+ private:
+  /// Hands everything on: the file has a buffer.
+  struct Buffer final : std::streambuf {
+    explicit Buffer(const std::string& path) : file(path, results::Unfinished::kept) {}
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override;
+    int_type overflow(int_type byte) override;
+    int sync() override;
+    results::OutputFile file;
+  };
+  Buffer buffer_;
+};
 
 struct RecordTo {
   std::string path{};  // empty: nowhere
@@ -21,18 +41,20 @@ struct RecordTo {
 void add_record(CLI::App& verb, RecordTo& record);
 bool can_be_written(const RecordTo& record);
 
+/// A file that is there as a whole or under the name of an unfinished one, as a table is.
 class RunFile {
  public:
   explicit RunFile(const RecordTo& to) : to_(to) {}
   bool is_wanted() const { return !to_.path.empty(); }
-  /// Opens the file, for a run of this program. Null where it is not wanted, or cannot be opened.
+  /// Begins the file, for a run of this program. Null where it is not wanted.
   runs::Log* begin(const model::ModelProgram& program, model::RunHead head);
-  /// False, and said, where not all of it could be written.
-  bool close();
+  /// Ends it: with its name where the run came to an end, as an unfinished file where it was interrupted, and without a
+  /// file where there was no run. False, and said, where not all of it could be written.
+  bool finish(const model::Simulated& simulated);
 
  private:
   RecordTo to_;
-  std::ofstream file_;
+  std::optional<OutputStream> out_;
   std::unique_ptr<runs::Log> log_;
 };
 

@@ -134,9 +134,10 @@ ExitCode resume(const ReplayRequest& request) {
                          .progress = plan ? progress.over(from, plan->to) : nullptr},
                         log);
   }();
+  const bool is_recorded = file.finish(simulated);
   const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
                              head.as_written && !request.until, curves->get());
-  return file.close() || exit != done ? exit : usage;
+  return is_recorded || exit != done ? exit : usage;
 }
 
 }  // namespace

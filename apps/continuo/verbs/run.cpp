@@ -162,12 +162,13 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteF
     return run_and_show(prepared, {.boundary = *boundary, .log = log_of(request, prepared, file), .on_row = on_row},
                         *curves);
   }();
+  const bool is_recorded = file.finish(simulated);
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
                              request.experiment.as_written() && request.boundary.as_written(), motion, curves->get());
   if (!film_path.empty() && exit == done) {
     if (const ExitCode filmed = write_film(request.experiment, film_path); filmed != done) return filmed;
   }
-  return file.close() || exit != done ? exit : usage;
+  return is_recorded || exit != done ? exit : usage;
 }
 
 }  // namespace
