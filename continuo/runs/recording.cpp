@@ -64,9 +64,11 @@ bool fits(const Recording& recording, const model::Model& model) {
          (kind.solver == Solver::world) == std::holds_alternative<worlds::RunRecording>(recording);
 }
 
-model::Simulated replay(const std::shared_ptr<const model::ModelProgram>& program, const Recording& recording) {
-  if (const auto* one = std::get_if<model::IntegrationRecording>(&recording)) return replay_integration(program, *one);
-  return worlds::replay_world(program, std::get<worlds::RunRecording>(recording));
+model::Simulated replay(const std::shared_ptr<const model::ModelProgram>& program, const Recording& recording,
+                        const model::RowsOfRecording& rows) {
+  if (const auto* one = std::get_if<model::IntegrationRecording>(&recording))
+    return replay_integration(program, *one, rows);
+  return worlds::replay_world(program, std::get<worlds::RunRecording>(recording), rows);
 }
 
 model::Simulated resume(const std::shared_ptr<const model::ModelProgram>& program, const Recording& recording,
@@ -74,7 +76,7 @@ model::Simulated resume(const std::shared_ptr<const model::ModelProgram>& progra
   if (const auto* one = std::get_if<model::IntegrationRecording>(&recording))
     return resume_integration(program, *one, checkpoint, how, log ? log->integration() : nullptr);
   return worlds::resume_world(program, std::get<worlds::RunRecording>(recording), checkpoint,
-                              {.to = how.to, .interrupt = how.interrupt, .progress = how.progress},
+                              {.to = how.to, .interrupt = how.interrupt, .progress = how.progress, .rows = how.rows},
                               log ? log->world() : nullptr);
 }
 

@@ -56,7 +56,7 @@ using Recording = std::variant<model::IntegrationRecording, worlds::RunRecording
 
 /// Replays a recorded run. The program must be that of its text.
 [[nodiscard]] model::Simulated replay(const std::shared_ptr<const model::ModelProgram>& program,
-                                      const Recording& recording);
+                                      const Recording& recording, const model::RowsOfRecording& rows = {});
 /// Goes on from a checkpoint to the planned end, or to another, to the same bits as without a break.
 [[nodiscard]] model::Simulated resume(const std::shared_ptr<const model::ModelProgram>& program,
                                       const Recording& recording, std::size_t checkpoint,

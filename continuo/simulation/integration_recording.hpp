@@ -82,7 +82,7 @@ struct IntegrationRecording {
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).
 [[nodiscard]] Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program,
-                                           const IntegrationRecording& recording);
+                                           const IntegrationRecording& recording, const RowsOfRecording& rows = {});
 
 /// Those options of a resumed run that may differ from the recorded ones.
 struct ResumeOptions {
@@ -90,6 +90,7 @@ struct ResumeOptions {
   std::optional<std::size_t> max_steps{};
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
+  RowsOfRecording rows{};
 };
 /// Replays a recorded run up to one of its checkpoints, and integrates from there to its planned end, or to another.
 /// The results have the same bits as those without a break.

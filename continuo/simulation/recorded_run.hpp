@@ -5,6 +5,7 @@
 
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/run.hpp>
 #include <continuo/solve/outcome.hpp>
 
 namespace continuo::model {
@@ -25,6 +26,12 @@ struct RunEnd {
   std::string stop_text{};    // of the `stop` that ended it
   std::string error{};        // why bodies could not be moved on
   Statistics statistics{};    // what it cost, with what came before a break
+};
+
+/// Who gets the rows of a replayed or resumed run, from its beginning.
+struct RowsOfRecording {
+  OnRow on_row{};
+  bool keep_rows = true;  // as in Experiment; that of the recorded one does not matter
 };
 
 /// A checksum of all tables that the model reads.

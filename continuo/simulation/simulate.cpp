@@ -118,16 +118,17 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
   return judged(program, experiment, std::move(run), recorder, followers.log);
 }
 
-Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program,
-                             const IntegrationRecording& recording) {
+Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program, const IntegrationRecording& recording,
+                             const RowsOfRecording& rows) {
   Simulated simulated;
   Experiment experiment = recording.head.experiment;
+  experiment.keep_rows = rows.keep_rows;
   experiment.doubts = experiment.estimate_error = false;  // what was found then stands in the recording
   auto planned = plan_run(*program, experiment, simulated.diagnostics);
   if (!planned) return simulated;
   Run run;
   run.plan = std::move(*planned);
-  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment, rows.on_row);
   bool fits = true;
   for (const IntegrationCheckpoint& checkpoint : recording.checkpoints) fits = fits && recorder.add(checkpoint.part);
   if (recording.end) fits = fits && recorder.add(recording.end->part);
@@ -147,6 +148,7 @@ Simulated resume_integration(const std::shared_ptr<const ModelProgram>& program,
                              std::size_t checkpoint, const ResumeOptions& how, IntegrationLog* log) {
   Simulated simulated;
   Experiment experiment = recording.head.experiment;
+  experiment.keep_rows = how.rows.keep_rows;
   experiment.interrupt = how.interrupt;
   experiment.progress = how.progress;
   if (how.to) experiment.to = how.to;
@@ -155,7 +157,7 @@ Simulated resume_integration(const std::shared_ptr<const ModelProgram>& program,
   if (!planned) return simulated;
   Run run;
   run.plan = std::move(*planned);
-  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment, how.rows.on_row);
   for (std::size_t k = 0; k <= checkpoint; ++k) {
     if (!recorder.add(recording.checkpoints[k].part)) return does_not_fit(program->model, "it has other states");
     if (log) log->add(recording.checkpoints[k]);

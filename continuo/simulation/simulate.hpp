@@ -44,7 +44,7 @@ struct Followers {
   IntegrationLog* log = nullptr;     // records the run, so that it can be replayed and resumed
 };
 /// Where Experiment::keep_rows is false, the run itself has the first and the last row alone, and needs no memory for
-/// the others; a log then has none.
+/// the others.
 [[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
                                  const Followers& followers);
 

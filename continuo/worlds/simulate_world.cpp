@@ -340,6 +340,7 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
   model::Experiment experiment = recording.head.experiment;
   const auto as_recorded = plan_world(program->model, experiment, simulated.diagnostics);
   if (!as_recorded) return simulated;
+  experiment.keep_rows = how.rows.keep_rows;
   experiment.interrupt = how.interrupt;
   experiment.progress = how.progress;
   if (how.to) experiment.to = how.to;
@@ -350,7 +351,7 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
     return simulated;
   }
   Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world),
-                        look_of(*as_recorded), log);
+                        look_of(*as_recorded), log, how.rows.on_row);
   if (const Status status = simulation.resume(recording, checkpoint); !status) {
     simulated.diagnostics.push_back(does_not_fit(program->model, status.message));
     return simulated;
@@ -358,14 +359,14 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
   return simulation.go();
 }
 
-model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program,
-                              const RunRecording& recording) {
+model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
+                              const model::RowsOfRecording& rows) {
   model::Simulated simulated;
   const model::Model& model = program->model;
   auto planned = plan_world(model, recording.head.experiment, simulated.diagnostics);
   if (!planned) return simulated;
-  model::RunRecorder recorder(*program, as_the_recorder_sees(*planned), recording.head.experiment.keep_rows,
-                              sample_times(model, *planned), program->always);
+  model::RunRecorder recorder(*program, as_the_recorder_sees(*planned), rows.keep_rows, sample_times(model, *planned),
+                              program->always, rows.on_row);
   for (const Note& note : recording.notes) {
     if (!fits(model, note)) {
       simulated.diagnostics.push_back(does_not_fit(model, "it has other states"));

@@ -38,13 +38,14 @@ namespace continuo::worlds {
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).
 [[nodiscard]] model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program,
-                                            const RunRecording& recording);
+                                            const RunRecording& recording, const model::RowsOfRecording& rows = {});
 
 /// Those options of a resumed run that may differ from the recorded ones.
 struct GoOn {
   std::optional<double> to{};
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
+  model::RowsOfRecording rows{};
 };
 /// Replays a recorded run up to one of its checkpoints, and simulates it from there to its planned end, or to another.
 /// The results have the same bits as those without a break.

@@ -11,11 +11,12 @@
 namespace continuo::app {
 
 model::OnRow MotionTable::rows_of(model::Experiment& experiment, bool keeps_rows) {
-  if (path_.empty() || !runs::kind_of(program_.model).has_start) return {};
-  std::vector<model::Diagnostic> problems;  // the run itself will tell of them
+  if (!runs::kind_of(program_.model).has_start) return {};
+  experiment.keep_rows = keeps_rows;
+  if (path_.empty()) return [](const model::RunRow&) { return true; };  // extremes are looked for at rows as well
+  std::vector<model::Diagnostic> problems;                              // the run itself will tell of them
   plan_ = runs::plan_from_start(program_, experiment, problems);
   if (!plan_) return {};
-  experiment.keep_rows = keeps_rows;
   return [this](const model::RunRow& row) { return add(row); };
 }
 

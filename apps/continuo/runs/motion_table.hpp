@@ -18,8 +18,8 @@ class MotionTable {
   MotionTable(const MotionTable&) = delete;
   MotionTable& operator=(const MotionTable&) = delete;
 
-  /// What gets the rows of a run of this experiment. `keeps_rows`: something else needs them as well. Nothing where
-  /// there is no plan of such a run; then `finish` writes the rows that it has kept.
+  /// What gets the rows of a run of this experiment, which then keeps none of them. `keeps_rows`: something else needs
+  /// them as well. Nothing where there is no plan of such a run; then `finish` writes the rows that it has kept.
   model::OnRow rows_of(model::Experiment& experiment, bool keeps_rows);
   /// Ends the table: as whole, or as that of a run that did not come to its end.
   Status finish(const model::Run& run, bool is_whole);

@@ -1,6 +1,7 @@
 // Adds --record, and writes and reads the file of a recording.
 #include <array>
 #include <fstream>
+#include <span>
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/file_options.hpp>
@@ -72,9 +73,7 @@ bool RunFile::finish(const model::Simulated& simulated) {
 std::optional<runs::Recording> read_run(const std::string& path) {
   if (!readable(path)) return std::nullopt;
   const std::string text = contents_of(path);
-  const auto* const first = reinterpret_cast<const Bytes::value_type*>(text.data());
-  const Bytes bytes(first, first + text.size());
-  Result<runs::Recording> recording = runs::read_recording(bytes);
+  Result<runs::Recording> recording = runs::read_recording(std::as_bytes(std::span(text)));
   if (recording) return *std::move(recording);
   say(fmt::format("{}: {}", name_of_file(path), recording.status().message));
   return std::nullopt;

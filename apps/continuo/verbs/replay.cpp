@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <apps/continuo/options/command_line.hpp>
@@ -77,6 +78,13 @@ std::optional<std::unique_ptr<results::MotionCurves>> curves_for(const ReplayReq
                                       .decides_size = runs::head_of(opened.recording).decides_size});
 }
 
+/// The rows of such an experiment go to the table, and are kept only for what is made of all of them.
+model::RowsOfRecording rows_for(MotionTable& motion, model::Experiment experiment, const RunOutputs& outputs) {
+  experiment.keep_rows = needs_rows(outputs);
+  model::OnRow on_row = motion.rows_of(experiment, needs_rows(outputs));
+  return {.on_row = std::move(on_row), .keep_rows = experiment.keep_rows};
+}
+
 ExitCode replay(const ReplayRequest& request) {
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
@@ -85,9 +93,11 @@ ExitCode replay(const ReplayRequest& request) {
   const runs::Recording& recording = opened.recording;
   if (!runs::is_whole(recording))
     mention(fmt::format("{} was cut off after t = {:g}", request.file, runs::last_time(recording)));
-  const model::Simulated simulated = runs::replay(opened.program, recording);
+  MotionTable motion(request.outputs.motion, *opened.program);
+  const model::Simulated simulated =
+      runs::replay(opened.program, recording, rows_for(motion, runs::head_of(recording).experiment, request.outputs));
   const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
-                             runs::head_of(recording).as_written, curves->get());
+                             runs::head_of(recording).as_written, motion, curves->get());
   if (simulated.run && !request.outputs.data_to_standard_output())
     print(fmt::format("places  {}\n", places_of(recording)));
   return exit;
@@ -123,6 +133,7 @@ ExitCode resume(const ReplayRequest& request) {
   if (request.until) head.experiment.to = request.until;
   if (request.max_steps) head.experiment.max_steps = request.max_steps;
   runs::Log* const log = file.begin(*opened.program, head);
+  MotionTable motion(request.outputs.motion, *opened.program);
   const model::Simulated simulated = [&] {
     Progress progress;
     std::vector<model::Diagnostic> problems;  // the run itself will tell of them
@@ -131,12 +142,13 @@ ExitCode resume(const ReplayRequest& request) {
                         {.to = request.until,
                          .max_steps = request.max_steps,
                          .interrupt = &interrupt_flag(),
-                         .progress = plan ? progress.over(from, plan->to) : nullptr},
+                         .progress = plan ? progress.over(from, plan->to) : nullptr,
+                         .rows = rows_for(motion, head.experiment, request.outputs)},
                         log);
   }();
   const bool is_recorded = file.finish(simulated);
   const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
-                             head.as_written && !request.until, curves->get());
+                             head.as_written && !request.until, motion, curves->get());
   return is_recorded || exit != done ? exit : usage;
 }
 

@@ -46,7 +46,6 @@ runs::Log* log_of(const RunRequest& request, const Prepared& prepared, RunFile& 
   head.decides_size = prepared.decides_size;
   head.as_written = request.experiment.as_written();
   head.experiment = prepared.experiment;
-  head.experiment.keep_rows = true;  // a replay has no table that it could hand them to
   return file.begin(*prepared.program, std::move(head));
 }
 
@@ -153,7 +152,7 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteF
   RunFile file(request.record);
   MotionTable motion(request.outputs.motion, *prepared.program);
   const model::OnRow on_row =
-      motion.rows_of(prepared.experiment, needs_rows(request.outputs) || request.estimate_error || file.is_wanted());
+      motion.rows_of(prepared.experiment, needs_rows(request.outputs) || request.estimate_error);
   const model::Simulated simulated = [&] {
     Progress progress;
     prepared.experiment.progress = watcher_of(prepared, progress);

@@ -1,4 +1,5 @@
 // Runs the integration of a model by a method chosen by its name, watched by a recorder.
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -129,6 +130,8 @@ std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration
 namespace {
 
 constexpr std::chrono::seconds checkpoint_of_clock{10};  // a long run that is killed loses no more than this
+// Rows wait for the next checkpoint in memory. They are more than what a checkpoint has besides.
+constexpr std::size_t bytes_of_rows = std::size_t{4} << 20, rows_to_state = 8;
 
 /// A run on its way to its end.
 class Progression {
@@ -142,6 +145,7 @@ class Progression {
         run_(run),
         log_(followers.log),
         steps_(begin_integration(method, std::move(integration), {run.plan.from, run.plan.to})) {
+    if (log_) recorder_.collect_parts();
     if (log_ && log_->checkpoints() > 0)
       every_ = (run.plan.to - run.plan.from) / static_cast<double>(log_->checkpoints());
   }
@@ -188,13 +192,15 @@ class Progression {
     const Statistics cost = steps_->statistics();
     const bool is_broken_off = (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) ||
                                cost.steps + cost.rejected >= options_.max_steps;
-    if (t < next_ && now - noted_ < checkpoint_of_clock && !is_broken_off) return;
+    const bool has_many_rows = recorder_.bytes_of_part() >= std::max(bytes_of_rows, rows_to_state * bytes_of_state_);
+    if (t < next_ && now - noted_ < checkpoint_of_clock && !is_broken_off && !has_many_rows) return;
     noted_ = now;
     next_ = t + every_;
     IntegrationCheckpoint checkpoint{.t = t, .part = recorder_.part(), .marks_seen = recording_.marks_seen()};
     ByteWriter writer;
     steps_->save(writer);
     checkpoint.state = writer.take();
+    bytes_of_state_ = checkpoint.state.size();
     log_->add(checkpoint);
   }
 
@@ -206,6 +212,7 @@ class Progression {
   IntegrationLog* log_;
   std::unique_ptr<Stepping> steps_;
   double every_ = 0, next_ = 0;
+  std::size_t bytes_of_state_ = 0;  // of the last checkpoint
   std::chrono::steady_clock::time_point noted_ = std::chrono::steady_clock::now();
 };
 

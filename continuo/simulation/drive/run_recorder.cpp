@@ -64,9 +64,16 @@ void RunRecorder::add_row(double t, const X& x) {
     quantities_(t, x, quantity_values_);
     row_.insert(row_.end(), quantity_values_.begin(), quantity_values_.end());
   }
+  hand_over();
+  keep_row();
+  if (!collects_parts_) return;
+  part_rows_.insert(part_rows_.end(), row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(motion_.columns.size()));
+  if (has_energy_) part_energies_.push_back(row_.back());
+}
+
+void RunRecorder::hand_over() {
   if (on_row_ && !is_refused_)
     is_refused_ = !on_row_({.columns = motion_.columns, .states = motion_.states, .values = row_});
-  keep_row();
 }
 
 void RunRecorder::keep_row() {
@@ -109,8 +116,7 @@ void RunRecorder::begin(double t, const X& x) {
 }
 
 void RunRecorder::on_segment(double to, const At& at) {
-  const bool wants_rows = keep_rows_ || on_row_;
-  if (wants_rows && !every_step_) {
+  if (wants_rows() && !every_step_) {
     for (; times_[next_output_] <= to; ++next_output_) {
       at(times_[next_output_], x_);
       add_row(times_[next_output_], x_);
@@ -124,14 +130,14 @@ void RunRecorder::on_segment(double to, const At& at) {
   if (watched_values_.empty() && !every_step_) return;
   at(to, x_);
   watch(to, x_);
-  if (every_step_ && wants_rows) add_row(to, x_);
+  if (every_step_ && wants_rows()) add_row(to, x_);
 }
 
 void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
   for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;
-  if (!(keep_rows_ || on_row_) || (names.empty() && before == after)) return;
+  if (!wants_rows() || (names.empty() && before == after)) return;
   if (last_row_ != t) add_row(t, before);
   if (before != after) add_row(t, after);
 }
@@ -149,14 +155,10 @@ void RunRecorder::finish(double t, const X& x) {
 }
 
 RecordedPart RunRecorder::part() {
-  if (!keep_rows_) values_parted_ = motion_.values.size(), energies_parted_ = total_energy_.size();
-  const auto since = [](const auto& list, std::size_t& parted) {
-    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(std::exchange(parted, list.size()));
-    return std::remove_cvref_t<decltype(list)>(begin, list.end());
-  };
-  return {.rows = since(motion_.values, values_parted_),
-          .total_energy = since(total_energy_, energies_parted_),
-          .events = since(events_, events_parted_),
+  const auto first_event = static_cast<std::ptrdiff_t>(std::exchange(events_parted_, events_.size()));
+  return {.rows = std::exchange(part_rows_, {}),
+          .total_energy = std::exchange(part_energies_, {}),
+          .events = {events_.begin() + first_event, events_.end()},
           .next_output = next_output_,
           .next_sample = next_sample_,
           .samples = {samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(next_sample_)},
@@ -183,8 +185,13 @@ bool RunRecorder::add(const RecordedPart& part) {
   if (!fits) return false;
   for (std::size_t k = 0; k < part.next_sample; ++k)
     if (part.samples[k].t != samples_[k].t) return false;
-  motion_.values.insert(motion_.values.end(), part.rows.begin(), part.rows.end());
-  total_energy_.insert(total_energy_.end(), part.total_energy.begin(), part.total_energy.end());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto first = part.rows.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    row_.assign(first, first + static_cast<std::ptrdiff_t>(columns));
+    if (has_energy_) row_.push_back(part.total_energy[row]);
+    hand_over();
+    keep_row();
+  }
   events_.insert(events_.end(), part.events.begin(), part.events.end());
   next_output_ = part.next_output;
   next_sample_ = part.next_sample;
@@ -194,7 +201,7 @@ bool RunRecorder::add(const RecordedPart& part) {
   x_ = part.x;
   last_row_ = part.last_row;
   any_ = part.any;
-  values_parted_ = motion_.values.size(), energies_parted_ = total_energy_.size(), events_parted_ = events_.size();
+  events_parted_ = events_.size();
   return true;
 }
 

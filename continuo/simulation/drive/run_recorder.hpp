@@ -64,8 +64,12 @@ class RunRecorder {
   void contact(double t, std::string name, double impulse);
   void finish(double t, const X& x);
 
+  /// Collects the rows for `part` from now on. They are in memory until it is called.
+  void collect_parts() { collects_parts_ = true; }
   /// What has been recorded since the last call.
   [[nodiscard]] RecordedPart part();
+  /// How many bytes of rows that will be.
+  [[nodiscard]] std::size_t bytes_of_part() const { return part_rows_.size() * sizeof(double); }
   /// Adds such a part, of a recorder of the same model and plan. False where it cannot be one.
   [[nodiscard]] bool add(const RecordedPart& part);
 
@@ -82,7 +86,9 @@ class RunRecorder {
 
  private:
   void add_row(double t, const X& x);
+  void hand_over();
   void keep_row();
+  [[nodiscard]] bool wants_rows() const { return keep_rows_ || on_row_ || collects_parts_; }
   void watch(double t, const X& x);
   /// `take(sample)` for each that is wanted up to `to`, once.
   template <class Take>
@@ -96,7 +102,7 @@ class RunRecorder {
   OutputTimes times_;
   bool every_step_, keep_rows_;
   OnRow on_row_;
-  bool is_refused_ = false;
+  bool is_refused_ = false, collects_parts_ = false;
   std::size_t next_output_ = 0, next_sample_ = 0;
   Motion motion_;
   std::vector<double> row_;  // that is being added
@@ -110,7 +116,8 @@ class RunRecorder {
   X x_;
   double last_row_ = 0;
   bool has_energy_, any_ = false;
-  std::size_t values_parted_ = 0, energies_parted_ = 0, events_parted_ = 0;  // by the last call of `part`
+  std::vector<double> part_rows_, part_energies_;  // since the last call of `part`
+  std::size_t events_parted_ = 0;                  // by that call
 };
 
 }  // namespace continuo::model
