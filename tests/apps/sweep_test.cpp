@@ -173,5 +173,46 @@ TEST(Initial, IsReadFromATable) {
   EXPECT_EQ(shell.run("run spring.sim --initial-from first.csv -o first.csv").exit, 1);
 }
 
+// Members end in another order than they stand in the table, and wait for each other where they have many rows.
+TEST(Sweep, PutsLongRunsIntoTheirOrder) {
+  const Shell shell;
+  shell.write("swing.sim", "param n = 1\nx'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..n output 0.01\n");
+  ASSERT_EQ(shell.run("run swing.sim --set n=1500,1,700,2,900 -o all.csv").exit, 0);
+  std::vector<std::string> rows;
+  for (const char* n : {"1500", "1", "700", "2", "900"}) {
+    ASSERT_EQ(shell.run(fmt::format("run swing.sim --set n={} -o one.csv", n)).exit, 0);
+    for (const std::string& row : rows_of(shell.read("one.csv"))) rows.push_back(std::string(n) + ',' + row);
+  }
+  EXPECT_TRUE(rows_of(shell.read("all.csv")) == rows);
+}
+
+TEST(Sweep, KeepsTheRowsUntilCtrlC) {
+  const Shell shell;
+  shell.write("slow.sim",
+              "param k = 1\nx'' = -k*x + 1e-9*sum(i in 1..3000: sin(i*x))\nx(0) = 1; x'(0) = 0\n"
+              "run 0..1e7 output 0.01\n");
+  shell.write("k.csv", "an older one");
+  const Result result =
+      shell.run("run slow.sim --set k=1..9/9 --max-steps 1000000000 -o k.csv --events e.csv", "timeout --signal=INT 1");
+  EXPECT_THAT(result.exit, testing::AnyOf(130, 124)) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("are in k.unfinished.csv"));
+  EXPECT_EQ(shell.read("k.csv"), "an older one");
+  EXPECT_GT(rows_of(shell.read("k.unfinished.csv")).size(), 10u);
+  EXPECT_TRUE(shell.has("e.unfinished.csv"));
+}
+
+// The shell's limit on file sizes stands for a full disk; its signal is ignored, since a full disk sends none.
+TEST(Sweep, EndsOnAFullDisk) {
+  const Shell shell;
+  shell.write("swing.sim", "param k = 1\nx'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..400 output 0.01\n");
+  shell.write("k.csv", "an older one");
+  const Result result = shell.call("trap '' XFSZ; ulimit -f 600; timeout 60 '" CONTINUO_COMMAND
+                                   "' run swing.sim --set k=1..9/500 -o k.csv");
+  EXPECT_EQ(result.exit, 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("cannot write k.csv"));
+  EXPECT_EQ(shell.read("k.csv"), "an older one");
+  EXPECT_GT(rows_of(shell.read("k.unfinished.csv")).size(), 1000u);
+}
+
 }  // namespace
 }  // namespace continuo::app

@@ -33,13 +33,6 @@ bool is_file(const std::string& path) {
   return !path.empty() && !place.descriptor && place.kind == results::FilePlace::Kind::file;
 }
 
-/// The files of a run that was ended before its time have the names of unfinished ones.
-RunOutputs unfinished(RunOutputs outputs) {
-  for (std::string* path : {&outputs.events, &outputs.plot, &outputs.manifest})
-    if (is_file(*path)) *path = results::free_unfinished_name(*path);
-  return outputs;
-}
-
 bool write_files(const RunOutputs& asked, const model::ModelProgram& program, const model::Run& run,
                  MotionTable& motion, results::MotionCurves& curves) {
   const model::Model& model = program.model;
@@ -95,6 +88,12 @@ ExitCode exit_without_run(std::span<const model::Diagnostic> diagnostics) {
 }
 
 }  // namespace
+
+RunOutputs unfinished(RunOutputs outputs) {
+  for (std::string* path : {&outputs.events, &outputs.plot, &outputs.manifest})
+    if (is_file(*path)) *path = results::free_unfinished_name(*path);
+  return outputs;
+}
 
 std::string manifest_file(const RunOutputs& outputs) {
   if (!outputs.manifest.empty()) return outputs.manifest;

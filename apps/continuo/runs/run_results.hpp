@@ -36,6 +36,8 @@ bool wants_picture(const RunOutputs& outputs);
 std::optional<std::unique_ptr<results::MotionCurves>> curves_for(const RunOutputs& outputs, const Prepared& prepared);
 /// Said before a long run, not after it.
 bool can_be_written(const RunOutputs& outputs);
+/// The files of a run that was ended before its time have the names of unfinished ones; the table is not among these.
+RunOutputs unfinished(RunOutputs outputs);
 /// Where the manifest goes: as asked, or beside the table; empty for nowhere.
 std::string manifest_file(const RunOutputs& outputs);
 /// Whether something is asked for that is made of all rows together.

@@ -9,6 +9,7 @@
 
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/runs/sweep.hpp>
+#include <apps/continuo/runs/sweep_table.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
@@ -161,7 +162,7 @@ model::Overrides parameters_of(const Sweep& sweep, std::size_t member, const Pre
 }
 
 void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, const results::MotionCurves* curves,
-                SweepMember& member) {
+                SweepTable& table, SweepMember& member) {
   model::Experiment experiment = base.experiment;
   experiment.progress = nullptr;
   bool decides_size = false;
@@ -184,8 +185,11 @@ void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, con
     for (const std::size_t i : states_named(model, sweep.axes[a].name))
       experiment.initial[model.states[i].column] = sweep.value(index, a);
   }
+  experiment.keep_rows = curves || experiment.estimate_error;
+  runs::RunRequest asked;
+  asked.on_row = [&table, index](const model::RunRow& row) { return table.add(index, row); };
   if (!curves) {
-    member.simulated = runs::run(member.program, experiment);
+    member.simulated = runs::run(member.program, experiment, asked);
     return;
   }
   const auto begun = [&] {
@@ -193,7 +197,7 @@ void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, con
                         : std::make_unique<results::MotionCurves>(*curves);
   };
   member.curves = begun();
-  runs::WatchedRun watched = runs::run(member.program, experiment, {}, *member.curves);
+  runs::WatchedRun watched = runs::run(member.program, experiment, asked, *member.curves);
   if (!watched.is_shown) member.curves = begun();  // the picture shows the rows
   member.simulated = std::move(watched.simulated);
 }
@@ -209,6 +213,18 @@ std::size_t Sweep::size() const {
 double Sweep::value(std::size_t member, std::size_t axis) const {
   for (std::size_t a = axes.size() - 1; a > axis; --a) member /= axes[a].values.size();
   return axes[axis].values[member % axes[axis].values.size()];
+}
+
+std::vector<double> Sweep::values(std::size_t member) const {
+  std::vector<double> all;
+  for (std::size_t a = 0; a < axes.size(); ++a) all.push_back(value(member, a));
+  return all;
+}
+
+std::vector<std::string> Sweep::columns() const {
+  std::vector<std::string> all;
+  for (const SweepAxis& axis : axes) all.push_back(axis.column());
+  return all;
 }
 
 std::string Sweep::label(std::size_t member) const {
@@ -254,13 +270,14 @@ std::optional<Sweep> read_sweep(const std::vector<SweepText>& texts, const Prepa
 }
 
 std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const results::MotionCurves* curves,
-                                   const std::function<void(double)>& watch) {
+                                   SweepTable& table, const std::function<void(double)>& watch) {
   std::vector<SweepMember> members(sweep.size());
   std::atomic<std::size_t> next = 0, done_so_far = 0;
   std::mutex watching;
   const auto work = [&] {
-    for (std::size_t i = next++; i < members.size() && !interrupt_flag(); i = next++) {
-      run_member(sweep, i, base, curves, members[i]);
+    for (std::size_t i = next++; i < members.size() && !interrupt_flag() && !table.is_refused(); i = next++) {
+      run_member(sweep, i, base, curves, table, members[i]);
+      table.end(i, members[i].simulated.run);
       ++done_so_far;
       if (!watch) continue;
       const std::scoped_lock lock(watching);

@@ -2,7 +2,7 @@
 //
 //   const std::vector<SweepText> texts = take_sweep(options);   // what is left in `options` holds for all members
 //   const Prepared base = prepare(options);
-//   if (const auto sweep = read_sweep(texts, base)) members = run_sweep(*sweep, base, watch);
+//   if (const auto sweep = read_sweep(texts, base)) members = run_sweep(*sweep, base, nullptr, table, watch);
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -17,6 +17,8 @@
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
+
+class SweepTable;  // runs/sweep_table.hpp
 
 /// What is varied, and its values in the unit of the model.
 struct SweepAxis {
@@ -35,6 +37,10 @@ struct Sweep {
   std::size_t size() const;
   /// The value of an axis in a member. The last axis varies first.
   double value(std::size_t member, std::size_t axis) const;
+  /// All of them, one for each axis.
+  std::vector<double> values(std::size_t member) const;
+  /// The headings of their columns.
+  std::vector<std::string> columns() const;
   /// "k = 2, x(0) = 3".
   std::string label(std::size_t member) const;
 };
@@ -58,8 +64,8 @@ struct SweepMember {
 };
 /// Runs all members, as many at a time as there are cores; each is the run that its settings alone would give. After
 /// Ctrl-C those that have ended are there. `curves`: what is to be drawn of each, or null. `watch` gets the part that
-/// is done.
+/// is done. The table gets the rows as they come; when it wants no more, no more runs are begun.
 std::vector<SweepMember> run_sweep(const Sweep& sweep, const Prepared& base, const results::MotionCurves* curves,
-                                   const std::function<void(double)>& watch);
+                                   SweepTable& table, const std::function<void(double)>& watch);
 
 }  // namespace continuo::app

@@ -16,9 +16,7 @@
 #include <continuo/results/json.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/plots.hpp>
-#include <continuo/results/sha256.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/results/table_file.hpp>
 
 namespace continuo::app {
 namespace {
@@ -30,17 +28,6 @@ std::string text_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-/// The columns that say which run a row is of.
-std::vector<std::string> columns_of(const Sweep& sweep) {
-  std::vector<std::string> columns;
-  for (const SweepAxis& axis : sweep.axes) columns.push_back(axis.column());
-  return columns;
-}
-std::vector<double> values_of(const Sweep& sweep, std::size_t member) {
-  std::vector<double> values;
-  for (std::size_t a = 0; a < sweep.axes.size(); ++a) values.push_back(sweep.value(member, a));
-  return values;
-}
 Json json_of(const Sweep& sweep, std::size_t member) {
   Json json = Json::object();
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) json[sweep.axes[a].column()] = sweep.value(member, a);
@@ -48,22 +35,19 @@ Json json_of(const Sweep& sweep, std::size_t member) {
 }
 
 /// The manifests of all runs in one, without the model's text in each.
-std::string manifest_of(const Sweep& sweep, const Members& members, std::string& hash) {
-  Json json{{"continuo", CONTINUO_VERSION}, {"sweep", columns_of(sweep)}};
-  std::string hashes;
+std::string manifest_of(const Sweep& sweep, const Members& members, const std::string& hash) {
+  Json json{{"continuo", CONTINUO_VERSION}, {"sweep", sweep.columns()}};
   Json runs = Json::array();
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (!members[m].simulated.run) continue;
     const model::Model& model = members[m].program->model;
     Json one = Json::parse(results::manifest(model, *members[m].simulated.run, CONTINUO_VERSION));
-    hashes += one["hash"].get<std::string>();
     if (!json.contains("model")) json["model"] = one["model"];
     for (const char* same : {"continuo", "model"}) one.erase(same);
     Json entry = json_of(sweep, m);
     entry.update(one);
     runs.push_back(std::move(entry));
   }
-  hash = results::sha256(hashes);
   json["runs"] = std::move(runs);
   json["hash"] = hash;
   return text_of(json);
@@ -88,32 +72,10 @@ bool have_one_table(const Members& members) {
   return true;
 }
 
-Status write_rows(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
-  results::TableHead head;
-  head.manifest = hash;
-  for (std::string& name : columns_of(sweep)) head.columns.push_back({.name = std::move(name), .unit = {}});
-  const auto& columns = first_run(members)->motion.columns;
-  head.columns.insert(head.columns.end(), columns.begin(), columns.end());
-  results::TableFile table(path, std::move(head));
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    if (!members[m].simulated.run) continue;
-    const model::Motion& motion = members[m].simulated.run->motion;
-    std::vector<double> row = values_of(sweep, m);
-    const std::size_t swept = row.size();
-    for (std::size_t i = 0; i < motion.rows() && table.status(); ++i) {
-      row.resize(swept);
-      const auto values = motion.row(i);
-      row.insert(row.end(), values.begin(), values.end());
-      table.row(row);
-    }
-  }
-  return table.close();
-}
-
 Status write_events(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
   const model::Motion& motion = first_run(members)->motion;
   std::vector<std::string> columns{"event"};
-  for (std::string& column : columns_of(sweep)) columns.push_back(std::move(column));
+  for (std::string& column : sweep.columns()) columns.push_back(std::move(column));
   columns.insert(columns.end(), {"t", "impulse"});
   for (const char* side : {"before ", "after "})
     for (std::size_t i = 1; i <= motion.states; ++i) columns.push_back(side + motion.columns[i].name);
@@ -122,7 +84,7 @@ Status write_events(const Sweep& sweep, const Members& members, const std::strin
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (!members[m].simulated.run) continue;
     for (const model::RecordedEvent& event : members[m].simulated.run->events) {
-      std::vector<double> row = values_of(sweep, m);
+      std::vector<double> row = sweep.values(m);
       row.push_back(event.t);
       row.push_back(event.impulse.value_or(std::nan("")));
       row.insert(row.end(), event.before.begin(), event.before.end());
@@ -158,19 +120,23 @@ results::Figure figure_of(const Sweep& sweep, const Members& members) {
   return figure;
 }
 
-bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& outputs) {
-  std::string hash;
-  const std::string manifest = manifest_of(sweep, members, hash);
-  bool fine = true;
-  const bool wants_table = !outputs.motion.empty() || !outputs.events.empty();
-  if (wants_table && !have_one_table(members)) {
+/// The table is there already: here it is ended.
+bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& asked, SweepTable& table,
+                 const std::string& hash) {
+  const bool is_whole = !interrupt_flag().load();
+  RunOutputs outputs = is_whole ? asked : unfinished(asked);
+  if (!outputs.events.empty() && !have_one_table(members)) {
     say("the runs have different states, so they have no common table: leave out -o and --events");
     return false;
   }
-  if (!outputs.motion.empty()) fine = written(write_rows(sweep, members, outputs.motion, hash)) && fine;
+  bool fine = written(table.finish(is_whole));
+  if (!is_whole && !table.present_name().empty()) {
+    outputs.motion = table.present_name();
+    say(fmt::format("the rows until then are in {}", outputs.motion));
+  }
   if (!outputs.events.empty()) fine = written(write_events(sweep, members, outputs.events, hash)) && fine;
   if (const std::string path = manifest_file(outputs); !path.empty())
-    fine = written(results::write_file(path, manifest)) && fine;
+    fine = written(results::write_file(path, manifest_of(sweep, members, hash))) && fine;
   if (!outputs.plot.empty()) fine = written(results::draw(figure_of(sweep, members), outputs.plot)) && fine;
   return fine;
 }
@@ -186,7 +152,7 @@ Json object_of(const Sweep& sweep, const Members& members, const model::Source& 
     one["messages"] = Json::parse(model::to_json(simulated.diagnostics, source));
     runs.push_back(std::move(one));
   }
-  return {{"swept", columns_of(sweep)}, {"runs", std::move(runs)}};
+  return {{"swept", sweep.columns()}, {"runs", std::move(runs)}};
 }
 
 /// A line for each run: what it was run with, how it ended, where.
@@ -194,14 +160,14 @@ std::string summary_of(const Sweep& sweep, const Members& members) {
   constexpr std::size_t most_states = 6;
   const model::Run* const first = first_run(members);
   const bool one_table = first && have_one_table(members);
-  std::vector<std::vector<std::string>> lines{columns_of(sweep)};
+  std::vector<std::vector<std::string>> lines{sweep.columns()};
   lines.front().emplace_back("ending");
   lines.front().emplace_back("t");
   const std::size_t states = one_table ? std::min(first->motion.states, most_states) : 0;
   for (std::size_t i = 1; i <= states; ++i) lines.front().push_back(first->motion.columns[i].name);
   for (std::size_t m = 0; m < members.size(); ++m) {
     std::vector<std::string>& line = lines.emplace_back();
-    for (const double value : values_of(sweep, m)) line.push_back(results::short_number(value));
+    for (const double value : sweep.values(m)) line.push_back(results::short_number(value));
     if (!members[m].simulated.run) {
       line.emplace_back(members[m].begun ? "not run" : "not begun");
       continue;
@@ -254,9 +220,10 @@ ExitCode exit_of(const Members& members) {
 }  // namespace
 
 ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members, const Prepared& base,
-                    const RunOutputs& outputs) {
+                    const RunOutputs& outputs, SweepTable& table, const std::string& hash) {
   const bool any = first_run(members) != nullptr;
-  const bool fine = !any || write_files(sweep, members, outputs);
+  const bool is_refused = table.is_refused();  // then runs that were not begun are none that were interrupted
+  const bool fine = !any || write_files(sweep, members, outputs, table, hash);
   if (outputs.json) {
     answer("continuo.sweep/1", object_of(sweep, members, base.loaded.source));
   } else if (!outputs.data_to_standard_output()) {
@@ -264,7 +231,7 @@ ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members,
   }
   show_failures(sweep, members);
   const ExitCode exit = exit_of(members);
-  return exit == done && !fine ? usage : exit;
+  return is_refused || (exit == done && !fine) ? usage : exit;
 }
 
 }  // namespace continuo::app

@@ -100,11 +100,13 @@ ExitCode sweep(RunRequest& request, const std::vector<SweepText>& texts, Prepare
   if (!curves) return usage;
   base.experiment.estimate_error = request.estimate_error;
   base.experiment.doubts = true;
+  const std::string hash = hash_of_sweep(*asked, base);
+  SweepTable table(request.outputs.motion, *asked, hash);
   const std::vector<SweepMember> members = [&] {
     Progress progress;
-    return run_sweep(*asked, base, curves->get(), progress.parts());
+    return run_sweep(*asked, base, curves->get(), table, progress.parts());
   }();
-  return tell_sweep(*asked, members, base, request.outputs);
+  return tell_sweep(*asked, members, base, request.outputs, table, hash);
 }
 
 /// The run, shown to the curves where there are any. Where they have not seen it, they are made anew, and the picture
