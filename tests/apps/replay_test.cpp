@@ -143,6 +143,9 @@ TEST(Replay, SaysWhatIsWrong) {
                            Case{"run both_ends.sim --record x.run", "--record: a boundary-value problem"},
                            Case{"run bounce.sim --record -", "--record takes the name of a file"},
                            Case{"run bounce.sim --record no/where.run", "cannot write no/where.run"},
+                           Case{"run bounce.sim --record x.csv", "--record writes .run"},
+                           Case{"run bounce.sim --manifest x.csv", "--manifest writes .json"},
+                           Case{"view bounce.sim --export x.csv", "--export writes .html"},
                            Case{"run bounce.sim --snapshots 3", "--snapshots requires --record"}}) {
     const Result result = shell.run(each.line);
     EXPECT_EQ(result.exit, 1) << each.line;

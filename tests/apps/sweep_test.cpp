@@ -177,6 +177,7 @@ TEST(Initial, IsReadFromATable) {
 TEST(Sweep, PutsLongRunsIntoTheirOrder) {
   const Shell shell;
   shell.write("swing.sim", "param n = 1\nx'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..n output 0.01\n");
+  EXPECT_EQ(shell.run("run swing.sim --set n=1,2 --events events.csv").exit, 0);  // without a table
   ASSERT_EQ(shell.run("run swing.sim --set n=1500,1,700,2,900 -o all.csv").exit, 0);
   std::vector<std::string> rows;
   for (const char* n : {"1500", "1", "700", "2", "900"}) {

@@ -31,7 +31,8 @@ int OutputStream::Buffer::sync() {
 }
 
 void add_record(CLI::App& verb, RecordTo& record) {
-  auto* path = writes_file(verb, verb.add_option("--record", record.path, "Records the run, for replay and resume"));
+  auto* path =
+      writes_file(verb, verb.add_option("--record", record.path, "Records the run, for replay and resume"), {".run"});
   verb.add_option("--snapshots", record.checkpoints,
                   "Number of snapshots in the recording, from which resume can start (20)")
       ->type_name("N")

@@ -151,8 +151,10 @@ void add_outputs(CLI::App& verb, RunOutputs& outputs) {
           "The size of the picture in pixels: --size 1280x720")
       ->type_name("WxH");
   const auto* manifest =
-      writes_file(verb, verb.add_option("--manifest", outputs.manifest,
-                                        "Writes the manifest: model, options, versions (default: beside the table)"));
+      writes_file(verb,
+                  verb.add_option("--manifest", outputs.manifest,
+                                  "Writes the manifest: model, options, versions (default: beside the table)"),
+                  {".json"});
   for (const CLI::Option* table : {motion, events}) writes_beside(verb, table, std::string(manifest_suffix), manifest);
   verb.add_flag("--no-sketch", outputs.no_sketch, "Draws no small picture in the terminal");
   verb.add_flag("--json", outputs.json, "The result as one JSON object on standard output");

@@ -297,7 +297,8 @@ void add_view(CLI::App& app, ExitCode& exit) {
       ->check(CLI::Validator(port_fault, ""));
   reads_file(*verb, verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one"));
   writes_file(*verb,
-              verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends"));
+              verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends"),
+              {".html"});
   writes_pictures(*verb, verb->add_option("--record", request->recording.pictures,
                                           "Writes pictures to a folder, or a film (.gif; .mp4 by ffmpeg)"));
   verb->add_option("--fps", request->recording.rate, "Pictures per second, for --export and --record")
