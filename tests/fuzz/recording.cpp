@@ -16,6 +16,9 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <tests/fuzz/recorded_models.hpp>
 #include <tests/fuzz/right_sums.hpp>
@@ -23,13 +26,11 @@
 #include <continuo/bodies/recording.hpp>
 #include <continuo/language/check/check.hpp>
 #include <continuo/language/syntax/parser.hpp>
-#include <continuo/simulation/integration_recording.hpp>
-#include <continuo/worlds/simulate_world.hpp>
+#include <continuo/runs/recording.hpp>
 
 namespace {
 
 using namespace continuo;
-using namespace continuo::worlds;
 
 void check_refusal(const Status& status) {
   if (status.ending != Ending::unreadable || !status.message.starts_with("byte ")) std::abort();
@@ -75,63 +76,47 @@ bool is_short(const model::Experiment& e, double from) {
          e.to.value_or(1) - from < 2 && e.from.value_or(0) > -10;
 }
 
-void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording) {
-  if (!is_short(recording.head.experiment, 0)) return;
-  const model::Simulated told = replay_world(program, recording);
+/// The states of a run; none where nothing of them is there.
+std::size_t states_of(const worlds::RunRecording& recording) {
+  return recording.notes.front().x.size();
+}
+std::size_t states_of(const model::IntegrationRecording& recording) {
+  return recording.checkpoints.empty() ? 0 : recording.checkpoints.front().part.x.size();
+}
+
+/// The model that it may be a run of: one of its kind, with as many states where there is such a one.
+const std::shared_ptr<const model::ModelProgram>& program_for(const runs::Recording& recording) {
+  static const std::array programs{program_of(recorded_models[0].text),    program_of(recorded_models[1].text),
+                                   program_of(recorded_models[2].text),    program_of(recorded_equations[0].text),
+                                   program_of(recorded_equations[1].text), program_of(recorded_equations[2].text)};
+  const std::size_t states = std::visit([](const auto& one) { return states_of(one); }, recording);
+  const auto is_of_its_kind = [&](const auto& program) { return runs::fits(recording, program->model); };
+  const auto found = std::ranges::find_if(
+      programs, [&](const auto& program) { return is_of_its_kind(program) && program->model.states.size() == states; });
+  return found != programs.end() ? *found : *std::ranges::find_if(programs, is_of_its_kind);
+}
+
+void go_on(std::span<const std::byte> bytes) {
+  const Result<runs::Recording> recording = runs::read_recording(bytes);
+  if (!recording) return check_refusal(recording.status());
+  const model::RunHead& head = runs::head_of(*recording);
+  if (!is_short(head.experiment, 0)) return;
+  const auto& program = program_for(*recording);
+  const model::Simulated told = runs::replay(program, *recording);
   if (!told.run && told.diagnostics.empty()) std::abort();
-  if (recording.checkpoints.empty()) return;
-  const double from = recording.checkpoints.back().world.time;
+  const std::vector<double> times = runs::checkpoints_of(*recording);
+  if (times.empty()) return;
   std::atomic<bool> enough = false;
   const Timer timer(enough);
   std::ostringstream file;
-  RunLog log(file, recording.head, 3);
-  const model::Simulated on = resume_world(program, recording, recording.checkpoints.size() - 1,
-                                           {.to = from + 0.05, .interrupt = &enough}, &log);
+  runs::Log log(file, program->model, head, 3);
+  const model::Simulated on =
+      runs::resume(program, *recording, times.size() - 1, {.to = times.back() + 0.05, .interrupt = &enough}, &log);
   if (!on.run && on.diagnostics.empty()) std::abort();
   if (!on.run) return;
   // The recording of the resumed run must be readable, whatever the input was.
   const std::string text = file.str();
-  if (!RunRecording::read(std::as_bytes(std::span(text)))) std::abort();
-}
-
-void go_on(std::span<const std::byte> bytes) {
-  static const std::array programs{program_of(recorded_models[0].text), program_of(recorded_models[1].text),
-                                   program_of(recorded_models[2].text)};
-  const Result<RunRecording> recording = RunRecording::read(bytes);
-  if (!recording) return check_refusal(recording.status());
-  const auto fits = [&](const auto& program) {
-    return program->model.states.size() == recording->notes.front().x.size();
-  };
-  const auto found = std::ranges::find_if(programs, fits);
-  tell_and_go_on(found == programs.end() ? programs.front() : *found, *recording);
-}
-
-void go_on_with_equations(std::span<const std::byte> bytes) {
-  static const std::array programs{program_of(recorded_equations[0].text), program_of(recorded_equations[1].text),
-                                   program_of(recorded_equations[2].text)};
-  const Result<model::IntegrationRecording> recording = model::IntegrationRecording::read(bytes);
-  if (!recording) return check_refusal(recording.status());
-  const auto fits = [&](const auto& program) {
-    return !recording->checkpoints.empty() &&
-           program->model.states.size() == recording->checkpoints.front().part.x.size();
-  };
-  const auto found = std::ranges::find_if(programs, fits);
-  const auto& program = found == programs.end() ? programs.front() : *found;
-  if (!is_short(recording->head.experiment, 0)) return;
-  const model::Simulated told = replay_integration(program, *recording);
-  if (!told.run && told.diagnostics.empty()) std::abort();
-  if (recording->checkpoints.empty()) return;
-  const double from = recording->checkpoints.back().t;
-  std::atomic<bool> enough = false;
-  const Timer timer(enough);
-  std::ostringstream file;
-  model::IntegrationLog log(file, recording->head, 3);
-  const model::Simulated on = resume_integration(program, *recording, recording->checkpoints.size() - 1,
-                                                 {.to = from + 0.05, .interrupt = &enough}, &log);
-  if (!on.run && on.diagnostics.empty()) std::abort();
-  if (!on.run) return;
-  const std::string text = file.str();
-  if (!model::IntegrationRecording::read(std::as_bytes(std::span(text)))) std::abort();
+  if (!runs::read_recording(std::as_bytes(std::span(text)))) std::abort();
 }
 
 }  // namespace
@@ -151,10 +136,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     reader(count);
     if (count <= block.size() - 8) put_sum_right(block.subspan(8, static_cast<std::size_t>(count)));
   });
-  if (model::IntegrationRecording::is_one(bytes)) {
-    go_on_with_equations(bytes);
-  } else {
-    go_on(bytes);
-  }
+  go_on(bytes);
   return 0;
 }

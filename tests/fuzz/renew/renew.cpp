@@ -2,6 +2,7 @@
 // build unless asked for:
 //
 //   cmake --build build --target renew_fuzz_inputs && build/tests/fuzz/renew_fuzz_inputs tests/fuzz
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +10,8 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <tests/fuzz/recorded_models.hpp>
 
@@ -16,8 +19,8 @@
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/language/check/check.hpp>
 #include <continuo/language/syntax/parser.hpp>
-#include <continuo/simulation/integration_recording.hpp>
-#include <continuo/worlds/simulate_world.hpp>
+#include <continuo/runs/recording.hpp>
+#include <continuo/runs/run.hpp>
 
 namespace {
 
@@ -86,6 +89,20 @@ std::string without_conditions(const std::string& text) {
   return from == std::string::npos ? text : text.substr(0, from) + text.substr(text.find('\n', from + 1));
 }
 
+bool renew_run(const std::filesystem::path& folder, const RecordedModel& each) {
+  const model::Source source("scene.sim", each.text);
+  model::Checked checked = check(model::parse(source).model, source);
+  if (!checked.model) return false;
+  const auto program = model::compile(std::move(*checked.model));
+  std::ostringstream file;
+  model::RunHead head;
+  head.file = std::string(each.name) + ".sim";
+  head.text = each.text;
+  runs::Log log(file, program->model, head, 3);
+  return runs::run(program, {}, {.log = &log}).run &&
+         write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))));
+}
+
 bool renew_recordings(const std::filesystem::path& folder) {
   std::ostringstream bodies;
   Recorder<double, 3> recorder(bodies);
@@ -96,35 +113,13 @@ bool renew_recordings(const std::filesystem::path& folder) {
     (void)motion.advance();
   }
   recorder.finish();
-  if (!write(folder / "bodies", std::as_bytes(std::span(std::string_view(bodies.view()))))) return false;
-  for (const RecordedModel& each : recorded_models) {
-    const std::string text = without_conditions(each.text);
-    const model::Source source("scene.sim", text);
-    model::Checked checked = check(model::parse(source).model, source);
-    if (!checked.model) return false;
-    const auto program = model::compile(std::move(*checked.model));
-    std::ostringstream file;
-    model::RunHead head;
-    head.file = std::string(each.name) + ".sim";
-    head.text = text;
-    worlds::RunLog log(file, head, 3);
-    if (!worlds::simulate_world(program, {}, &log).run) return false;
-    if (!write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))))) return false;
-  }
-  for (const RecordedModel& each : recorded_equations) {
-    const model::Source source("scene.sim", each.text);
-    model::Checked checked = check(model::parse(source).model, source);
-    if (!checked.model) return false;
-    const auto program = model::compile(std::move(*checked.model));
-    std::ostringstream file;
-    model::RunHead head;
-    head.file = std::string(each.name) + ".sim";
-    head.text = each.text;
-    model::IntegrationLog log(file, head, 3);
-    if (!model::simulate(program, {}, {.log = &log}).run) return false;
-    if (!write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))))) return false;
-  }
-  return true;
+  return write(folder / "bodies", std::as_bytes(std::span(std::string_view(bodies.view())))) &&
+         std::ranges::all_of(recorded_models,
+                             [&](const RecordedModel& each) {
+                               return renew_run(folder,
+                                                {.name = each.name, .text = without_conditions(each.text).c_str()});
+                             }) &&
+         std::ranges::all_of(recorded_equations, [&](const RecordedModel& each) { return renew_run(folder, each); });
 }
 
 }  // namespace
