@@ -161,6 +161,8 @@ def verbs_without_a_model():
     answer(["methods"], 0, layout="continuo.methods/1")
     answer(["explain"], 0, layout="continuo.explain/1")
     answer(["explain", "E201"], 0, layout="continuo.explain/1")
+    answer(["export", "models/pendulum.sim", "--c"], 0, layout="continuo.export/1")
+    answer(["export", "models/newtons_cradle.sim", "--c"], 2, layout="continuo.failure/1")
     answer(["new", "fresh"], 0, layout="continuo.new/1")
     answer(["new", "fresh"], 1, layout="continuo.failure/1")
     answer(["report", "models/bouncing_ball.sim", "--with", "steady", "-o", "page.html"], layout="continuo.report/1")

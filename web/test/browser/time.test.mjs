@@ -31,7 +31,7 @@ test("the transport does what its buttons say", async (t) => {
 
   await button(tab, "Reset to the start").click();
   const reset = await until(tab, ({ t: time }) => time === 0, "a reset goes to the start");
-  assert.equal(reset.scene[2], 10, "the ball is at its height again");
+  assert.equal(reset.scene[2], 10.5, "the middle of the ball is its radius above its height again");
   await tab.keyboard.press("Space");
   await until(tab, ({ state, t: time }) => state.playing && time > 0.05, "the space bar plays");
 });
