@@ -54,6 +54,7 @@ const std::map<std::string, std::string> commands{{"run", "run own.sim"},
                                                   {"sense", "sense own.sim --param k"},
                                                   {"fit", "fit own.sim data.csv --param k"},
                                                   {"methods", "methods"},
+                                                  {"export", "export own.sim --c"},
                                                   {"explain", "explain"},
                                                   {"new", "new another"},
                                                   {"help", "help"}};
