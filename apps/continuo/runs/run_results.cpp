@@ -191,12 +191,6 @@ bool needs_rows(const RunOutputs& outputs) {
 }
 
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
-              const RunOutputs& outputs, bool as_written, results::MotionCurves* curves) {
-  MotionTable motion(outputs.motion, program);
-  return tell(simulated, source, program, outputs, as_written, motion, curves);
-}
-
-ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written, MotionTable& motion, results::MotionCurves* curves) {
   show(simulated.diagnostics, source);
   if (!simulated.run) return exit_without_run(simulated.diagnostics);

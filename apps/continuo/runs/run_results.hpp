@@ -44,11 +44,8 @@ std::string manifest_file(const RunOutputs& outputs);
 bool needs_rows(const RunOutputs& outputs);
 
 /// Writes and prints what is wanted. Checks are meant for a run as its model is written.
-/// `curves`: those of the motion, where somebody has followed them; else the picture shows the rows.
-ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
-              const RunOutputs& outputs, bool as_written, results::MotionCurves* curves = nullptr);
-
-/// The same, with the table of -o as it was written during the run.
+/// `motion`: the table of -o as it was written during the run. `curves`: those of the motion, where somebody has
+/// followed them; else the picture shows the rows.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written, MotionTable& motion, results::MotionCurves* curves = nullptr);
 
