@@ -1,6 +1,8 @@
 // Several runs at once by --set and --initial: each has the bits of the run that its settings alone give. And where a
 // run begins, by --initial and --initial-from.
 #include <random>
+#include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -174,6 +176,19 @@ TEST(Initial, IsReadFromATable) {
 }
 
 // Members end in another order than they stand in the table, and wait for each other where they have many rows.
+TEST(Sweep, DrawsEachRunInAColourOfItsOwn) {
+  const Shell shell;
+  shell.write("decay.sim", "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..5\nplot x against t\n");
+  ASSERT_EQ(shell.run("run decay.sim --set k=1,2,3 --plot decay.svg").exit, 0);
+  const std::string picture = shell.read("decay.svg");
+  const std::regex stroke(R"(stroke='rgb\( *([0-9]+), *([0-9]+), *([0-9]+)\)')");
+  std::set<std::string> colors;  // but for the greys of axes and texts
+  for (auto found = std::sregex_iterator(picture.begin(), picture.end(), stroke); found != std::sregex_iterator();
+       ++found)
+    if ((*found)[1] != (*found)[2] || (*found)[2] != (*found)[3]) colors.insert(found->str());
+  EXPECT_THAT(colors, SizeIs(3));
+}
+
 TEST(Sweep, PutsLongRunsIntoTheirOrder) {
   const Shell shell;
   shell.write("swing.sim", "param n = 1\nx'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..n output 0.01\n");

@@ -1,6 +1,7 @@
 // Writes the table, the events, the picture and the manifest of a sweep, and prints its summary or its object.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -96,7 +97,31 @@ Status write_events(const Sweep& sweep, const Members& members, const std::strin
   return out.close();
 }
 
-/// The curves of all runs in the panels of one, named by what was swept.
+/// How many curves have a name; the others are jumps of those.
+std::size_t named_curves(const results::Panel& panel) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(panel.curves, [](const results::Curve& curve) { return !curve.label.empty(); }));
+}
+
+/// Adds the curves of a run, named by what was swept, in the next colours of the panel; jumps keep the colour of their
+/// curve.
+void append_curves(results::Panel& all, results::Panel one, const std::string& member) {
+  const std::size_t count = named_curves(one);
+  std::size_t next = named_curves(all);
+  std::map<std::size_t, std::size_t> colors;  // by the number of a run alone
+  for (std::size_t i = 0; i < one.curves.size(); ++i) {
+    results::Curve& curve = one.curves[i];
+    const std::size_t own = curve.number.value_or(i);
+    if (!curve.label.empty()) {
+      colors[own] = next++;
+      curve.label = count == 1 ? member : curve.label + ", " + member;
+    }
+    curve.number = colors.contains(own) ? colors[own] : own;
+    all.curves.push_back(std::move(curve));
+  }
+}
+
+/// The curves of all runs in the panels of one.
 results::Figure figure_of(const Sweep& sweep, const Members& members) {
   results::Figure figure;
   for (std::size_t m = 0; m < members.size(); ++m) {
@@ -104,17 +129,12 @@ results::Figure figure_of(const Sweep& sweep, const Members& members) {
     results::Figure one = results::figure_of(*members[m].program, *members[m].simulated.run, *members[m].curves);
     if (figure.title.empty()) figure.title = one.title;
     for (std::size_t p = 0; p < one.panels.size(); ++p) {
-      results::Panel& panel = one.panels[p];
-      const bool is_alone = panel.curves.size() == 1;
-      for (results::Curve& curve : panel.curves)
-        curve.label = is_alone ? sweep.label(m) : curve.label + ", " + sweep.label(m);
-      panel.marks.clear();  // each run has its own
       if (p >= figure.panels.size()) {
-        figure.panels.push_back(std::move(panel));
-      } else {
-        auto& curves = figure.panels[p].curves;
-        std::ranges::move(panel.curves, std::back_inserter(curves));
+        results::Panel& panel = figure.panels.emplace_back(one.panels[p]);
+        panel.curves.clear();
+        panel.marks.clear();  // each run has its own
       }
+      append_curves(figure.panels[p], std::move(one.panels[p]), sweep.label(m));
     }
   }
   return figure;
