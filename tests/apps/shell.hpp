@@ -37,6 +37,12 @@ class Shell {
   Result run(const std::string& arguments, const std::string& before = "") const {
     return call(before + " '" CONTINUO_COMMAND "' " + arguments);
   }
+  /// Sends the command what Ctrl-C sends, once the files of a pattern hold so many bytes: however slow the machine is.
+  Result interrupt(const std::string& arguments, const std::string& files, int bytes) const {
+    return call("'" CONTINUO_COMMAND "' " + arguments + " & run=$!; for i in $(seq 1200); do [ $(cat " + files +
+                " 2> .none | wc -c) -gt " + std::to_string(bytes) +
+                " ] && break; sleep 0.1; done; kill -INT $run; wait $run");
+  }
   /// Any line of the shell's.
   Result call(const std::string& line) const {
     const std::string inside = "cd '" + folder_.string() + "' && { " + line + "; } >.out 2>.err </dev/null";

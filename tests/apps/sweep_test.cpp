@@ -211,12 +211,8 @@ TEST(Sweep, KeepsTheRowsUntilCtrlC) {
               "param k = 1\nx'' = -k*x + 1e-9*sum(i in 1..3000: sin(i*x))\nx(0) = 1; x'(0) = 0\n"
               "run 0..1e7 output 0.01\n");
   shell.write("k.csv", "an older one");
-  // However slow the machine: once there are rows.
-  const Result result = shell.call(
-      "'" CONTINUO_COMMAND
-      "' run slow.sim --set k=1..9/9 --max-steps 1000000000 -o k.csv --events e.csv & run=$!;"
-      " for i in $(seq 1200); do [ \"$(wc -l < k.unfinished.csv)\" -gt 20 ] 2> /dev/null && break; sleep 0.1;"
-      " done; kill -INT $run; wait $run");
+  const Result result = shell.interrupt("run slow.sim --set k=1..9/9 --max-steps 1000000000 -o k.csv --events e.csv",
+                                        "k.unfinished.csv", 1000);
   EXPECT_EQ(result.exit, 130) << result.err;
   EXPECT_THAT(result.err, HasSubstr("are in k.unfinished.csv"));
   EXPECT_EQ(shell.read("k.csv"), "an older one");

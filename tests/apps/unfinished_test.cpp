@@ -200,10 +200,10 @@ TEST(Interrupted, KeepsTheRowsUnderTheNameOfAnUnfinishedTable) {
     // Its rows take long, lest there be millions of them.
     place.shell.write("slow.sim",
                       "x'' = -x + 1e-9*sum(i in 1..3000: sin(i*x))\nx(0) = 1; x'(0) = 0\nrun 0..1e7 output 0.01\n");
-    const Result result = place.shell.run(
+    const Result result = place.shell.interrupt(
         "run slow.sim --max-steps 1000000000 -o " + name + " --events events.csv --manifest manifest.json",
-        "timeout --signal=INT 1");
-    EXPECT_THAT(result.exit, AnyOf(130, 124)) << result.err;
+        "out.unfinished.*", 2000);
+    EXPECT_EQ(result.exit, 130) << result.err;
     EXPECT_THAT(result.err, HasSubstr("are in " + unfinished)) << ending;
     EXPECT_EQ(place.shell.read(name), "an older one");
     EXPECT_GT(place.shell.read(unfinished).size(), 1000u);
