@@ -1,5 +1,4 @@
 // Machine code on the models of the gallery: every number as of the tape, whole runs too; and the exported C files.
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tests/symbolic/native_referee.hpp>
 
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/c_export.hpp>
@@ -25,22 +25,6 @@ namespace continuo::model::native_models_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Folder {
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "continuo-native-models-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    path = name;
-  }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path path;
-};
-
-std::uint64_t bits(double value) {
-  return std::isnan(value) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(value);
-}
 
 void expect_the_same(const std::vector<double>& actual, const std::vector<double>& expected, const std::string& what) {
   ASSERT_EQ(actual.size(), expected.size()) << what;
@@ -84,7 +68,7 @@ void expect_the_same_jacobian(const ModelProgram& compiled, const ModelProgram& 
 }
 
 TEST(NativeGallery, EveryModelGivesTheBitsOfItsTapes) {
-  const Folder folder;
+  const TestFolder folder;
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
   std::mt19937 random(7);
   std::size_t models = 0;
@@ -132,44 +116,66 @@ std::vector<double> numbers_of(const fs::path& folder, const std::string& text, 
   return numbers;
 }
 
+/// The numbers that the compiled text prints, against the tape and the derivatives of the model.
+void expect_that_c_is(const Loaded& loaded, const fs::path& folder) {
+  const auto program = compile(*loaded.model);
+  const Result<std::string> text = c_text(*program);
+  ASSERT_TRUE(text);
+  const std::vector<double> start = start_values(program->model);
+  const std::size_t n = program->model.states.size();
+  const std::vector<double> x(start.begin() + program->model.layout.states,
+                              start.begin() + program->model.layout.states + static_cast<std::ptrdiff_t>(n));
+  ModelDerivatives derivatives(*program, start);
+  const std::string& own = program->model.name;
+  std::string big = own;
+  for (char& c : big) c = static_cast<char>(std::toupper(c));
+  const std::vector<double> printed =
+      numbers_of(folder, *text,
+                 fmt::format("static double r[{0}_WORK], y[{0}_STATES], j[{0}_JACOBIAN];\n"
+                             "(void){1}_state_names;\n"
+                             "{1}_rates(0.25, {1}_start, {2}, 0, r, y);\n{1}_jacobian(0.25, {1}_start, {2}, 0, r, j);\n"
+                             "for (int i = 0; i < {0}_STATES; ++i) printf(\"%a\\n\", y[i]);\n"
+                             "for (int k = 0; k < {0}_JACOBIAN; ++k)\n"
+                             "  printf(\"%d %d %a\\n\", {1}_jacobian_rows[k], {1}_jacobian_columns[k], j[k]);\n",
+                             big, own, program->model.parameters.empty() ? "0" : own + "_parameters"));
+  std::vector<double> expected = Evaluation(program->derivatives[0], start)(0.25, x), dense(n * n);
+  derivatives.jacobian(0, 0.25, x, dense);
+  ASSERT_GT(printed.size(), n);
+  // Nothing is prepared: a factor of parameters may round in another order.
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(printed[i], expected[i], 1e-13 * (1 + std::abs(expected[i]))) << i;
+  for (std::size_t k = n; k + 2 < printed.size(); k += 3) {
+    double& entry = dense[static_cast<std::size_t>(printed[k]) * n + static_cast<std::size_t>(printed[k + 1])];
+    EXPECT_NEAR(printed[k + 2], entry, 1e-13 * (1 + std::abs(entry)));
+    entry = 0;
+  }
+  EXPECT_THAT(dense, ::testing::Each(0.0));  // all that are not zero were printed
+}
+
+Loaded model_of_gallery(const fs::path& file) {
+  Loaded loaded = load(file.string());
+  EXPECT_TRUE(loaded) << file;
+  return loaded;
+}
+
 TEST(CExport, IsTheModel) {
-  const Folder folder;
+  const TestFolder folder;
   for (const std::string name : {"pendulum", "kepler", "brusselator_line", "pollution", "lorenz"}) {
     SCOPED_TRACE(name);
-    const Loaded loaded = load(std::string(CONTINUO_SOURCE_DIR) + "/models/" + name + ".sim");
-    ASSERT_TRUE(loaded);
-    const auto program = compile(*loaded.model);
-    const Result<std::string> text = c_text(*program);
-    ASSERT_TRUE(text);
-    const std::vector<double> start = start_values(program->model);
-    const std::size_t n = program->model.states.size();
-    const std::vector<double> x(start.begin() + program->model.layout.states,
-                                start.begin() + program->model.layout.states + static_cast<std::ptrdiff_t>(n));
-    ModelDerivatives derivatives(*program, start);
-    const std::string& own = program->model.name;
-    std::string big = own;
-    for (char& c : big) c = static_cast<char>(std::toupper(c));
-    const std::vector<double> printed = numbers_of(
-        folder.path, *text,
-        fmt::format("static double r[{0}_WORK], y[{0}_STATES], j[{0}_JACOBIAN];\n"
-                    "(void){1}_state_names;\n"
-                    "{1}_rates(0.25, {1}_start, {2}, 0, r, y);\n{1}_jacobian(0.25, {1}_start, {2}, 0, r, j);\n"
-                    "for (int i = 0; i < {0}_STATES; ++i) printf(\"%a\\n\", y[i]);\n"
-                    "for (int k = 0; k < {0}_JACOBIAN; ++k)\n"
-                    "  printf(\"%d %d %a\\n\", {1}_jacobian_rows[k], {1}_jacobian_columns[k], j[k]);\n",
-                    big, own, program->model.parameters.empty() ? "0" : own + "_parameters"));
-    std::vector<double> expected = Evaluation(program->derivatives[0], start)(0.25, x), dense(n * n);
-    derivatives.jacobian(0, 0.25, x, dense);
-    ASSERT_GT(printed.size(), n);
-    // Nothing is prepared: a factor of parameters may round in another order.
-    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(printed[i], expected[i], 1e-13 * (1 + std::abs(expected[i]))) << i;
-    for (std::size_t k = n; k + 2 < printed.size(); k += 3) {
-      double& entry = dense[static_cast<std::size_t>(printed[k]) * n + static_cast<std::size_t>(printed[k + 1])];
-      EXPECT_NEAR(printed[k + 2], entry, 1e-13 * (1 + std::abs(entry)));
-      entry = 0;
-    }
-    EXPECT_THAT(dense, ::testing::Each(0.0));  // all that are not zero were printed
+    expect_that_c_is(model_of_gallery(fs::path(CONTINUO_SOURCE_DIR) / "models" / (name + ".sim")), folder.path);
   }
+}
+
+TEST(CExport, GalleryIsTheModelsOfOneMode) {
+  const TestFolder folder;
+  std::size_t models = 0;
+  for (const fs::path& file : gallery()) {
+    SCOPED_TRACE(file);
+    const Loaded loaded = model_of_gallery(file);
+    if (loaded.model->has_world() || loaded.model->modes.size() != 1 || !loaded.model->inputs.empty()) continue;
+    expect_that_c_is(loaded, folder.path);
+    ++models;
+  }
+  EXPECT_GT(models, 30u);
 }
 
 TEST(CExport, AGridOfManyPointsIsFewLines) {

@@ -1,6 +1,5 @@
 // Machine code of tapes against the tapes themselves, bit by bit: random expressions, families, tables, many threads.
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "native_referee.hpp"
 #include <continuo/symbolic/native/c_source.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
 
@@ -126,24 +126,6 @@ std::vector<double> evaluated(const Tape& tape, const std::vector<double>& value
   return outputs;
 }
 
-/// Bits, but any NaN is as good as another: its sign and payload are those of the order of operands.
-std::uint64_t bits(double value) {
-  return std::isnan(value) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(value);
-}
-
-/// A folder of this test alone.
-struct Folder {
-  Folder() : path((fs::temp_directory_path() / "continuo-native-test-XXXXXX").string()) {
-    std::string name = path.string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    path = name;
-  }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path path;
-};
-
 void expect_the_same_bits(Graph& g, const std::vector<NodeId>& outputs, std::mt19937& random, NativeCompiler& native) {
   const auto tape = std::make_shared<const Tape>(g, outputs, layout, tables());
   const auto compiled = std::make_shared<const Tape>(g, outputs, layout, tables());
@@ -158,7 +140,7 @@ void expect_the_same_bits(Graph& g, const std::vector<NodeId>& outputs, std::mt1
 }
 
 TEST(Native, RandomExpressionsGiveTheBitsOfTheTape) {
-  const Folder folder;
+  const TestFolder folder;
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
   for (unsigned seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -170,7 +152,7 @@ TEST(Native, RandomExpressionsGiveTheBitsOfTheTape) {
 }
 
 TEST(Native, FamiliesInLoopsGiveTheBitsOfTheTape) {
-  const Folder folder;
+  const TestFolder folder;
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
   std::size_t loops = 0;
   for (unsigned seed = 100; seed < 112; ++seed) {
@@ -195,7 +177,7 @@ std::shared_ptr<const Tape> some_tape(double salt) {
 }
 
 TEST(Native, TakesOverWhileTheTapeRuns) {
-  const Folder folder;
+  const TestFolder folder;
   std::mt19937 random(5);
   std::vector<double> values(variables, 0.25);
   const auto tape = some_tape(1);
@@ -221,7 +203,7 @@ TEST(Native, TakesOverWhileTheTapeRuns) {
 }
 
 TEST(Native, IsGivenUpAtOnceWhereTheRunEnds) {
-  const Folder folder;
+  const TestFolder folder;
   const fs::path slow = folder.path / "slow";
   std::ofstream(slow) << "#!/bin/sh\nexec sleep 60\n";
   fs::permissions(slow, fs::perms::owner_all);
@@ -239,7 +221,7 @@ TEST(Native, IsGivenUpAtOnceWhereTheRunEnds) {
 }
 
 TEST(Native, WithoutACompilerTheTapeGoesOnAndSaysWhy) {
-  const Folder folder;
+  const TestFolder folder;
   setenv("CC", "/nowhere/cc", 1);
   const auto tape = some_tape(3);
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
@@ -251,7 +233,7 @@ TEST(Native, WithoutACompilerTheTapeGoesOnAndSaysWhy) {
 }
 
 TEST(Native, FilesThatWereAlteredAreNotLoaded) {
-  const Folder folder;
+  const TestFolder folder;
   const NativeCache cache(folder.path / "cache");
   ASSERT_TRUE(cache.status()) << cache.status().message;
   const fs::path made = folder.path / "made.so";
@@ -271,7 +253,7 @@ TEST(Native, FilesThatWereAlteredAreNotLoaded) {
 }
 
 TEST(Native, TheCacheStaysSmall) {
-  const Folder folder;
+  const TestFolder folder;
   const NativeCache cache(folder.path / "cache");
   const fs::path made = folder.path / "made.so";
   std::ofstream(made) << std::string(15'000'000, 'x');
@@ -283,7 +265,7 @@ TEST(Native, TheCacheStaysSmall) {
 }
 
 TEST(Native, AFolderThatOthersCanWriteIsNoCache) {
-  const Folder folder;
+  const TestFolder folder;
   const fs::path open = folder.path / "open";
   fs::create_directory(open);
   fs::permissions(open, fs::perms::all);

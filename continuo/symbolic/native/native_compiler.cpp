@@ -130,6 +130,7 @@ bool NativeCompiler::load_from_cache(const Tape& tape, const std::string& text) 
 void NativeCompiler::compile(const Tape& tape, const std::string& text, std::stop_token stop) {
   const TemporaryFolder folder;
   if (folder.path().empty()) return note_trouble("no folder for temporary files can be made");
+  if (const Status status = check_private(folder.path()); !status) return note_trouble(status.message);
   const fs::path source = folder.path() / "tape.c", made = folder.path() / "tape.so";
   {
     std::ofstream stream(source, std::ios::binary);
