@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <continuo/numerics/complex_number.hpp>
-#include <continuo/numerics/small_lu.hpp>
+#include <continuo/numerics/elimination/small_lu.hpp>
 
 namespace continuo::detail {
 

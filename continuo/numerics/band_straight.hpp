@@ -9,7 +9,7 @@
 
 #include <continuo/numerics/band_end.hpp>
 #include <continuo/numerics/complex_number.hpp>
-#include <continuo/numerics/small_lu.hpp>
+#include <continuo/numerics/elimination/small_lu.hpp>
 
 namespace continuo::detail {
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include <continuo/numerics/complex_number.hpp>
-#include <continuo/numerics/listed_lu.hpp>
-#include <continuo/numerics/small_lu.hpp>
+#include <continuo/numerics/elimination/listed_lu.hpp>
+#include <continuo/numerics/elimination/small_lu.hpp>
 
 namespace continuo {
 

@@ -1,6 +1,8 @@
 // continuo/numerics/sparse_lu.cpp
-// KLU behind SparseLU: analysis, factorization, refactorization with the same pivots, solution. Nothing else is here,
-// so that a program without sparse matrices is linked without it.
+// KLU behind SparseLU: analysis, factorization, refactorization with the same pivots, solution. Where the elimination
+// is short, KLU chooses the pivots, and the rest follows a list. Nothing else is here, so that a program without sparse
+// matrices is linked without it.
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -9,6 +11,7 @@
 
 #include <suitesparse/klu.h>
 
+#include <continuo/numerics/elimination/sparse_elimination.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 
 namespace continuo {
@@ -60,11 +63,16 @@ class KluFactors final : public SparseFactors<Number> {
     } else {
       numeric_ = klu_z_factor(starts_.data(), rows_.data(), doubles(values), symbolic_, &common_);
     }
-    if (common_.status == KLU_OK) return true;
-    forget_pivots();
-    return false;
+    if (common_.status != KLU_OK) {
+      forget_pivots();
+      return false;
+    }
+    is_listed_ = elimination_.plan(starts_, rows_, pivots());
+    if (is_listed_) elimination_.scale_by(values);
+    return true;
   }
   [[nodiscard]] bool refactor(Number* values) override {
+    if (is_listed_) return elimination_.factor(values);
     int done;
     if constexpr (is_real<Number>) {
       done = klu_refactor(starts_.data(), rows_.data(), doubles(values), symbolic_, numeric_, &common_) &&
@@ -76,6 +84,7 @@ class KluFactors final : public SparseFactors<Number> {
     return done && common_.status == KLU_OK && common_.rgrowth > least_pivot_growth;
   }
   void solve(Number* b) override {
+    if (is_listed_) return elimination_.solve(b);
     if constexpr (is_real<Number>) {
       klu_solve(symbolic_, numeric_, size(), 1, doubles(b), &common_);
     } else {
@@ -85,7 +94,13 @@ class KluFactors final : public SparseFactors<Number> {
 
  private:
   [[nodiscard]] int size() const { return static_cast<int>(starts_.size()) - 1; }
+  /// Those of `numeric_`.
+  [[nodiscard]] detail::PivotOrder pivots() const {
+    const auto count = static_cast<std::size_t>(size()), blocks = static_cast<std::size_t>(symbolic_->nblocks);
+    return {{numeric_->Pnum, count}, {symbolic_->Q, count}, {symbolic_->R, blocks + 1}};
+  }
   void forget_pivots() {
+    is_listed_ = false;
     if (!numeric_) return;
     if constexpr (is_real<Number>) {
       klu_free_numeric(&numeric_, &common_);
@@ -98,6 +113,8 @@ class KluFactors final : public SparseFactors<Number> {
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
   std::vector<std::int32_t> starts_, rows_;
+  detail::SparseElimination<Number> elimination_;
+  bool is_listed_ = false;
 };
 
 template <class Number>

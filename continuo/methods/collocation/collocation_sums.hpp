@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include <continuo/methods/implicit/constant_mass.hpp>
-#include <continuo/numerics/small_lu.hpp>
+#include <continuo/numerics/elimination/small_lu.hpp>
 #include <continuo/numerics/state.hpp>
 
 namespace continuo::collocation {

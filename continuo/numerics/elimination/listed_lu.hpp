@@ -1,4 +1,4 @@
-// continuo/numerics/listed_lu.hpp
+// continuo/numerics/elimination/listed_lu.hpp
 // LU factorization of matrices of some ten to thirty rows that are mostly zeros, as those of chemical systems are. What
 // there is to do is listed once, in an order that leaves most zeros what they are, and done for every matrix with the
 // same zeros: P A Q = L D U with unit diagonals as in small_lu.hpp.

@@ -1,4 +1,4 @@
-// continuo/numerics/small_lu.hpp
+// continuo/numerics/elimination/small_lu.hpp
 // LU factorization with partial pivoting of matrices of at most eight rows, written out by the compiler. A solution is
 // a chain of operations that wait for each other, and an implicit method asks for many with one matrix; therefore both
 // factors get a unit diagonal (P A = L D U), so that the chain has no division and no product by the diagonal, and the
