@@ -15,16 +15,16 @@ using Quiet =
                      policies::evaluation_error<policies::ignore_error>,
                      // long double would be five times as slow, and mixtures need probabilities by the million.
                      policies::promote_double<false>>;
-using Distribution = boost::math::students_t_distribution<double, Quiet>;
+using StudentT = boost::math::students_t_distribution<double, Quiet>;
 
 }  // namespace
 
 double student_t_probability(double t, double degrees) {
-  return boost::math::cdf(Distribution(degrees), t);
+  return boost::math::cdf(StudentT(degrees), t);
 }
 
 double student_t_quantile(double confidence, double degrees) {
-  return boost::math::quantile(Distribution(degrees), 0.5 + confidence / 2);
+  return boost::math::quantile(StudentT(degrees), 0.5 + confidence / 2);
 }
 
 }  // namespace continuo::studies

@@ -1,0 +1,59 @@
+// How a quantity that is not known exactly is distributed: normal, uniform, lognormal, triangular.
+//
+//   const Result<Distribution> c = distribution("normal", std::array{0.5, 0.1});
+//   quantile(*c, 0.975);  // 0.69600
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <continuo/status/result.hpp>
+
+namespace continuo::studies {
+
+/// Every value from low to high is as likely as any other.
+struct Uniform {
+  double low = 0, high = 1;
+};
+/// The bell curve.
+struct Normal {
+  double mean = 0, deviation = 1;
+};
+/// The logarithm is normal. The mean and the deviation are those of the quantity itself, in its unit, as for `Normal`:
+/// one can take the place of the other, and a change of the unit changes nothing.
+struct Lognormal {
+  double mean = 1, deviation = 1;
+};
+/// The density rises in a straight line from low to the mode and falls in a straight line to high.
+struct Triangular {
+  double low = 0, mode = 0.5, high = 1;
+};
+/// Any of them, in whatever unit its numbers have.
+using Distribution = std::variant<Uniform, Normal, Lognormal, Triangular>;
+
+/// The names by which `distribution` knows them.
+inline constexpr std::array<std::string_view, 4> distribution_names{"uniform", "normal", "lognormal", "triangular"};
+
+/// What the numbers of a distribution mean: "low, high", "mean, deviation", "low, mode, high"; empty for another name.
+[[nodiscard]] std::string_view distribution_parameters(std::string_view name);
+
+/// The distribution of this name with these numbers, in the order of `distribution_parameters`; the reason where there
+/// is none.
+[[nodiscard]] Result<Distribution> distribution(std::string_view name, std::span<const double> parameters);
+
+/// What is wrong with a distribution, and how to mend it; a success where nothing is.
+Status check(const Distribution& distribution);
+
+/// The value that the quantity stays below with probability u, from 0 to 1; NaN for any other u. The distribution must
+/// have passed `check`. Accurate to rounding.
+[[nodiscard]] double quantile(const Distribution& distribution, double u);
+
+/// The mean of the quantity.
+[[nodiscard]] double mean(const Distribution& distribution);
+/// The standard deviation of the quantity.
+[[nodiscard]] double deviation(const Distribution& distribution);
+
+}  // namespace continuo::studies
