@@ -3,7 +3,7 @@
 //
 //   OutcomeSummary summary;
 //   for (const double landing : landings) summary.add(landing);  // NaN: a run that failed
-//   summary.mean(), summary.deviation(), summary.quantile(0.95);
+//   summary.mean(), summary.deviation(), summary.quantiles(std::array{0.05, 0.95});
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -47,16 +47,17 @@ class OutcomeSummary {
   [[nodiscard]] double lowest() const { return lowest_; }
   /// The greatest value; NaN without values.
   [[nodiscard]] double highest() const { return highest_; }
-  /// The value that a part p, from 0 to 1, of the values does not exceed; NaN without values.
-  [[nodiscard]] double quantile(double p) const;
-  /// How far the part may be from p: 0 while the quantiles are exact.
+  /// The values that these parts, from 0 to 1, of the values do not exceed: 0.5 is the median. NaN without values.
+  [[nodiscard]] std::vector<double> quantiles(std::span<const double> parts) const;
+  /// How far the parts may be from those asked for: 0 while the quantiles are exact.
   [[nodiscard]] double quantile_error() const;
   /// Counts in `parts` >= 1 parts of equal width between the extremes.
   [[nodiscard]] Histogram histogram(std::size_t parts) const;
 
  private:
   std::uint64_t count_ = 0, missing_ = 0;
-  double lowest_ = std::numeric_limits<double>::quiet_NaN(), highest_ = std::numeric_limits<double>::quiet_NaN();
+  double lowest_ = std::numeric_limits<double>::quiet_NaN();
+  double highest_ = std::numeric_limits<double>::quiet_NaN();
   ExactSum sum_;
   ExactSumOfSquares squares_;
   QuantileSketch sketch_;

@@ -3,10 +3,11 @@
 // Values are gathered in a buffer. A full buffer is sorted, and every second value goes on to the next level, where
 // each counts for twice as many. G. S. Manku, S. Rajagopalan, B. G. Lindsay, "Approximate medians and other quantiles
 // in one pass and with limited memory", SIGMOD (1998). No chance is involved: the same values in the same order give
-// the same bits. Each halving moves the rank of any value by at most the weight of one: their sum is `rank_error`.
+// the same bits. Each halving moves the rank of any value by at most the weight of one, in turn upwards and downwards.
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace continuo::studies {
@@ -27,7 +28,7 @@ class QuantileSketch {
   /// How many values were taken.
   [[nodiscard]] std::uint64_t count() const { return count_; }
   /// By how much the rank of a quantile may be wrong, in values; 0 while every value is kept.
-  [[nodiscard]] std::uint64_t rank_error() const { return rank_error_; }
+  [[nodiscard]] std::uint64_t rank_error() const;
 
   /// A value that is kept, and how many it stands for.
   struct Weighted {
@@ -42,16 +43,17 @@ class QuantileSketch {
 
   struct Level {
     std::vector<double> values{};
-    bool takes_odd = false;  // which of two neighbours the next halving keeps: in turn, so that errors cancel
+    bool takes_higher = false;  // of two neighbours, at the next halving: in turn, so that errors cancel
   };
   std::size_t capacity_;
-  std::uint64_t count_ = 0, rank_error_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t too_high_ = 0, too_low_ = 0;  // by how many values a rank may be
   std::vector<Level> levels_{1};
 };
 
 /// The value that a part p of the values does not exceed: between two of them in a straight line where each counts once
 /// (type 7 of R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American Statistician 50 (1996)),
 /// else the value that holds the place. NaN without values.
-[[nodiscard]] double quantile_of(const std::vector<QuantileSketch::Weighted>& sorted, double p);
+[[nodiscard]] double quantile_of(std::span<const QuantileSketch::Weighted> sorted, double p);
 
 }  // namespace continuo::studies
