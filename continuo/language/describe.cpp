@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/describe.hpp>
+#include <continuo/language/sweep.hpp>
 #include <continuo/language/world.hpp>
 
 namespace continuo::model {
@@ -31,6 +32,7 @@ class Writer {
     quantities("Energies", model_.energies);
     events();
     experiment();
+    sweep();
     remarks();
     return std::move(text_);
   }
@@ -246,6 +248,21 @@ class Writer {
     if (!model_.checks.empty()) {
       line("  {} {} the result", model_.checks.size(), model_.checks.size() == 1 ? "check judges" : "checks judge");
     }
+  }
+
+  void sweep() {
+    if (!model_.sweep) return;
+    const SweepPlan& plan = *model_.sweep;
+    section(fmt::format("Sweep ({} runs)", plan.runs), plan.axes, [&](const SweepAxis& axis) -> Row {
+      if (const auto* drawn = std::get_if<SweepDistribution>(&axis.values))
+        return {axis.column(), in_brackets(axis.unit),
+                fmt::format("{}({:g})", to_string(drawn->kind), fmt::join(drawn->numbers, ", "))};
+      const std::vector<double>& values = std::get<SweepPoints>(axis.values).values;
+      return {axis.column(), in_brackets(axis.unit),
+              values.size() == 1 ? fmt::format("{:g}", values.front())
+                                 : fmt::format("{} values from {:g} to {:g}", values.size(), std::ranges::min(values),
+                                               std::ranges::max(values))};
+    });
   }
 
   void remarks() {

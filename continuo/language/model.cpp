@@ -82,8 +82,12 @@ std::vector<double> start_values(const Model& model, const Overrides& overrides,
   }
   const double start = from ? *from : model.run.from ? evaluate(model, model.run.from->node, variables) : 0.0;
   variables[Layout::time] = start;
-  for (const Input& input : model.inputs)
-    variables[input.variable] = input.points ? input.points->value(start) : input.value;
+  for (const Input& input : model.inputs) {
+    const auto set = input.points ? overrides.end() : overrides.find(input.name);
+    variables[input.variable] = input.points             ? input.points->value(start)
+                                : set != overrides.end() ? set->second
+                                                         : input.value;
+  }
   set_all(model, model.unknowns, &Unknown::guess, variables);
   set_all(model, model.states, &State::initial, variables);
   return variables;

@@ -335,6 +335,8 @@ struct TableFile {
 
 /// `world { ... }`: world.hpp.
 struct WorldDescription;
+/// `sweep { ... }`: sweep.hpp.
+struct SweepPlan;
 
 /// The text of the model and the name it came by.
 struct Text {
@@ -386,6 +388,8 @@ struct Model {
 
   std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
 
+  std::shared_ptr<const SweepPlan> sweep;  // null where the model has none
+
   std::shared_ptr<NativeCompiler> native;  // compiles the tapes that run often; null: none is compiled
 
   /// Whether conditions are at several times.
@@ -412,7 +416,8 @@ inline constexpr std::size_t npos = static_cast<std::size_t>(-1);
 /// The index of a mode.
 [[nodiscard]] std::size_t find_mode(const Model& model, std::string_view name);
 
-/// Values of parameters by name that stand for those in the text. Unknown names are left aside: see `find_parameter`.
+/// Values of parameters by name, and of inputs without points, that stand for those in the text. Unknown names are left
+/// aside: see `find_parameter`.
 using Overrides = std::map<std::string, double, std::less<>>;
 
 /// A whole register file for the moment the run begins: t, initial states, parameters (those not overridden follow

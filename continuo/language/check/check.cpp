@@ -8,6 +8,7 @@
 #include <continuo/language/check/equations/algebraic.hpp>
 #include <continuo/language/check/products.hpp>
 #include <continuo/language/check/run/run_settings.hpp>
+#include <continuo/language/check/run/sweep.hpp>
 #include <continuo/language/check/states/layout.hpp>
 #include <continuo/language/check/views/checks.hpp>
 #include <continuo/language/check/views/drawing.hpp>
@@ -62,6 +63,7 @@ void translate(const Declarations& declared, Expressions& expressions, WorldAtWo
   model.plots = make_plots(expressions);
   model.drawing = Drawing(expressions, model.states).make();
   model.checks = Checks(expressions, model).make();
+  model.sweep = SweepReader(expressions, model).read();
   if (expressions.report.errors() == 0) append_unknowns(model, expressions.report);  // to the states
   check_method_fits(model, expressions);
   mark_structural(model.parameters, workspace);

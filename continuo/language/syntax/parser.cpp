@@ -44,6 +44,7 @@ constexpr std::array habits = {
     Habit{"spring", "springs between bodies stand in a world: world { spring ball to anchor stiffness 40 }"},
     Habit{"wall", "walls stand in a world: world { wall (0, 1) at 0 }"},
     Habit{"container", "a container stands in a world: world { container (0, 0) to (20, 20) }"},
+    Habit{"sweep", "many runs are asked for in a block: sweep { k from 1 to 10 count 50 }"},
     Habit{"while", "an event is written: when h falls through 0 { ... }"},
     Habit{"method", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
     Habit{"max", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
@@ -153,6 +154,9 @@ Statement Parser::parse_statement(Context context) {
       fail(error("E112", span, "`plot` has no brackets", "", "write plot x against t, or plot x"));
     } else if (at_world_word(context)) {
       node = parse_world_or_force();
+    } else if (at_sweep()) {
+      require_allowed(word, context);
+      node = parse_sweep();
     } else if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && as_name) {
       parse_identifier("a name");  // says what is wrong
     } else if (std::find(words.begin(), words.end(), word) != words.end()) {

@@ -1,7 +1,7 @@
 // continuo/language/syntax/parser_core.hpp
 // The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
 // (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
-// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), worlds (parser_world.cpp). The reading of
+// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), sweeps (parser_sweep.cpp), worlds (parser_world.cpp). The reading of
 // tokens and what happens after an error is parser_core.cpp.
 #pragma once
 #include <cstddef>
@@ -137,6 +137,8 @@ class Parser {
   ast::Identifier parse_identifier(std::string_view wanted);
   [[nodiscard]] ast::Range parse_range(int* height = nullptr);
   [[nodiscard]] ast::Range parse_range_from(ast::Expression first, int* height = nullptr);
+  /// A unit behind the last value is that of both.
+  [[nodiscard]] static ast::Range range_between(ast::Expression first, ast::Expression last);
   [[nodiscard]] std::string parse_text(std::string_view wanted);
 
   // --- statements (parser.cpp)
@@ -194,6 +196,17 @@ class Parser {
   [[nodiscard]] ast::Measure parse_measure();
   [[nodiscard]] ast::Moment parse_moment();
   [[nodiscard]] ast::AtEvent parse_event_reference(bool after);
+
+  // --- sweeps (parser_sweep.cpp)
+  [[nodiscard]] bool at_sweep();
+  [[nodiscard]] ast::Sweep parse_sweep();
+  [[nodiscard]] ast::SweepItem parse_sweep_item();
+  [[nodiscard]] bool at_sweep_axis();
+  [[nodiscard]] ast::SweepAxis parse_sweep_axis();
+  [[nodiscard]] ast::SweepGrid parse_sweep_grid();
+  [[nodiscard]] ast::SweepRuns parse_sweep_runs();
+  [[nodiscard]] ast::SweepKeeps parse_sweep_keeps();
+  [[nodiscard]] ast::SweepKeep parse_sweep_keep();
 
   // --- worlds (parser_world.cpp)
   [[nodiscard]] bool at_world_word(Context context);

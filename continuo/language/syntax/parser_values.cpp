@@ -149,7 +149,10 @@ ast::Range Parser::parse_range_from(Expression first, int* height) {
   go_on_inside_brackets();
   if (!at(TokenKind::dots)) unexpected("`..`", "a range is written from..to, as in 0..10");
   advance();
-  Expression last = parse_sum_of_terms(height);
+  return range_between(std::move(first), parse_sum_of_terms(height));
+}
+
+ast::Range Parser::range_between(Expression first, Expression last) {
   const std::uint32_t begin = first.span.begin;
   std::optional<ast::Unit> unit;
   if (auto* quantity = std::get_if<ast::Quantity>(&last.node);

@@ -216,6 +216,37 @@ name as listed by `continuo info`), or to the energy if the model declares one.)
     Code{"E282", "a value at a time outside of a check",
          R"(Only a condition, x(3) = 1, and a check, check x(3) = 1, may refer to a given time; other expressions
 use the present values. A product needs its sign: k*(x + 1), not k(x + 1).)"},
+    Code{"E283", "this cannot be varied",
+         R"(A sweep varies parameters by their names, initial values, also those of bodies, and inputs without a file:
+
+  sweep {
+    k from 1 to 10 [N/m] count 50
+    x(0) in (1, 2, 5) [m]
+    ball.y(0) normal(10, 0.1) [m]
+  }
+
+Each is varied once. Of a model with conditions at several times only parameters and inputs can be varied.)"},
+    Code{"E284", "the values of a sweep cannot be used",
+         R"(Values are written in one of these ways, with units as everywhere:
+
+  k from 1 to 10 [N/m] count 50            with `log` behind it in equal ratios, both ends of one sign
+  k in (1, 2, 5) [N/m]
+  k uniform(1, 10)                         from low to high
+  k normal(5, 0.5)                         mean and deviation, above 0
+  k lognormal(5, 0.1)                      median and deviation of the logarithm, both above 0
+  k triangular(1, 5, 10)                   low, mode and high
+  k from "samples.csv"                     the column named k, or the only one)"},
+    Code{"E285", "the number of runs of a sweep cannot be used",
+         R"(Without `runs` a sweep runs all combinations of its values. `runs 10000 sobol seed 7` makes so many runs,
+with values drawn from the distributions, and from grids, lists and files with equal probability. What has a
+distribution needs it. Instead of sobol there are latin_hypercube and monte_carlo. There are at most 1e9 runs.)"},
+    Code{"E286", "this cannot be kept of a run",
+         R"(A sweep keeps of every run what a check can read, and what happens along the run:
+
+  keep x at end, x at 3 [s], x after event 2, time of event 1 as landing, count of events, energy drift
+  keep max(abs(x)) as peak, min(x), mean(x^2), x at 0..10 by 0.1
+
+Each column has its own name: that after `as`, else the text.)"},
     Code{"E290", "a value lies outside its range",
          R"(A warning: the value of a param or input lies outside of its range, which is that of its slider.)"},
     Code{"E291", "an event never happens", R"(A warning: the condition of the event is the same number at all times.)"},

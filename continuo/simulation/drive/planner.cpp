@@ -55,6 +55,8 @@ void Planner::fail(const char* code, std::string message, std::string help, bool
 void Planner::check_parameters() {
   for (const auto& [name, given] : experiment_.parameters) {
     const std::size_t i = find_parameter(model_, name);
+    const std::size_t input = find_input(model_, name);
+    if (input != npos && !model_.inputs[input].points) continue;
     if (i == npos) {
       problems_.push_back(no_parameter(model_, name, run_.span));
     } else if (model_.parameters[i].structural && given != model_.parameters[i].value) {
@@ -72,9 +74,9 @@ void Planner::set_start() {
     const std::vector<std::size_t> meant = states_named(model_, name);
     if (meant.empty()) problems_.push_back(no_state(model_, name, run_.span));
     for (const std::size_t i : meant) {
-      if (model_.states[i].in_world) {
-        fail("E346", fmt::format("`{}` is of a body, which begins where `world` puts it", name),
-             "change the world, or a parameter that it reads", true);
+      if (model_.states[i].in_world && model_.states[i].base.starts_with("world.")) {
+        fail("E346", fmt::format("`{}` follows from the bodies", name), "set where a body begins, such as ball.x",
+             true);
         break;
       }
       plan_.variables[model_.layout.states + i] = value;

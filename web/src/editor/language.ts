@@ -7,18 +7,19 @@ const statements = new Set([
 ]);
 const words = new Set([
   "in", "if", "then", "else", "and", "or", "not", "from", "sum", "where", "go", "mark", "stop", "after", "before", "falls", "rises", "crosses", "through",
-  "method", "step", "tol", "abs", "max", "realtime", "steps", "log", "per", "decade", "against", "within", "always", "drift", "count", "of", "events", "event", "time", "end", "key", "to",
+  "method", "step", "tol", "abs", "max", "realtime", "steps", "log", "per", "decade", "against", "within", "always", "drift", "count", "of", "events", "event", "time", "end", "key", "to", "seed", "sobol", "latin_hypercube", "monte_carlo",
   "drag", "color", "label", "radius", "size", "angle", "turns", "width", "length", "scale",
 ]);
 // These begin something only where a name, a number or a bracket follows: `body ball`, `wall (0, 1)`. Elsewhere they are names.
-const ofWorlds = new Set([
+const ofBlocks = new Set([
   "world", "force", "torque", "dimension", "gravity", "material", "combine", "attraction", "drag", "body", "bodies", "wall", "container", "spring", "springs", "fix",
-  "ignore",
+  "ignore", "sweep", "runs", "keep",
 ]);
 const shapes = new Set(["floor", "ball", "spring", "rod", "rope", "arrow", "trail", "box", "text"]);
 const functions = new Set([
   "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "log2", "log10", "sqrt", "cbrt",
-  "pow", "hypot", "abs", "min", "max", "sign", "floor", "ceil", "round", "mod", "smooth", "interp", "distance", "within", "ray",
+  "pow", "hypot", "abs", "min", "max", "sign", "floor", "ceil", "round", "mod", "smooth", "interp", "distance", "within", "ray", "uniform", "normal", "lognormal",
+  "triangular",
 ]);
 
 interface State {
@@ -50,7 +51,7 @@ export function piece(stream: StringStream, state: State): Piece {
   if (name) {
     const word = name[0];
     if (atStart && statements.has(word)) return "keyword";
-    if (atStart && ofWorlds.has(word) && /^\s+[\p{L}\d({-]/u.test(stream.string.slice(stream.pos))) return "keyword";
+    if (atStart && ofBlocks.has(word) && /^\s+[\p{L}\d({-]/u.test(stream.string.slice(stream.pos))) return "keyword";
     if (functions.has(word) && stream.peek() === "(") return "function";
     if (shapes.has(word) && /^\s*(\(|-?\d|\w)/.test(stream.string.slice(stream.pos))) return "typeName";
     if (words.has(word)) return "modifier";

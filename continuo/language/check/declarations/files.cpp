@@ -1,6 +1,8 @@
 // continuo/language/check/declarations/files.cpp
 // Finds and reads the files that a model names.
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -62,6 +64,29 @@ std::optional<Table> points_of(const std::string& file, Span span, Table::Betwee
   if (read) return *std::move(read);
   report.fail("E272", span, "this file is not a table", describe(read.status()),
               column.empty() ? std::string() : fmt::format("a column named `{}` is read where there is one", column));
+  return std::nullopt;
+}
+
+std::optional<NamedColumn> column_of(const std::string& name, Span span, const std::string& column, Report& report) {
+  const bool is_confined = report.files() == FileReach::model_folder;
+  Result<std::string> text =
+      is_confined ? read_from_folder(folder_of(report), name) : Result<std::string>(std::string());
+  if (!is_confined) {
+    const std::string file = file_of(name, span, report);
+    if (file.empty()) return std::nullopt;
+    std::ifstream stream(file, std::ios::binary);
+    text = std::string{std::istreambuf_iterator<char>(stream), {}};
+  }
+  if (!text) {
+    report.fail("E270", span, "this file is not read", text.status().message,
+                "files are found relative to the model's folder, and not outside of it");
+    return std::nullopt;
+  }
+  Result<NamedColumn> read = parse_column(*text, name, column);
+  if (read) return *std::move(read);
+  report.fail("E272", span, "this file is not a table",
+              is_confined ? fmt::format("it has no column of numbers named `{}`", column) : describe(read.status()),
+              fmt::format("a column named `{}` is read, or the only one", column));
   return std::nullopt;
 }
 

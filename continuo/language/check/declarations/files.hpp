@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <continuo/language/check/names/report.hpp>
+#include <continuo/symbolic/graph/column.hpp>
 #include <continuo/symbolic/graph/table.hpp>
 
 namespace continuo::model::detail {
@@ -17,5 +18,8 @@ namespace continuo::model::detail {
 /// model alone, as the report's reach says, the messages quote nothing of the file.
 [[nodiscard]] std::optional<Table> points_of(const std::string& file, Span span, Table::Between between,
                                              std::string_view column, Report& report);
+/// The samples in the column of this name; E270 and E272 as above.
+[[nodiscard]] std::optional<NamedColumn> column_of(const std::string& name, Span span, const std::string& column,
+                                                   Report& report);
 
 }  // namespace continuo::model::detail

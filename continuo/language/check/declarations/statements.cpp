@@ -200,4 +200,14 @@ void Statements::walk_other(const ast::Run& run, Scope&, Span span) {
   declared_.run_span = span;
 }
 
+void Statements::walk_other(const ast::Sweep& sweep, Scope&, Span span) {
+  if (declared_.sweep) {
+    if (auto* said = report_.fail("E262", span, "`sweep` stands twice"))
+      said->related.push_back({declared_.sweep_span, "first here"});
+    return;
+  }
+  declared_.sweep = &sweep;
+  declared_.sweep_span = span;
+}
+
 }  // namespace continuo::model::detail

@@ -32,6 +32,7 @@ class Statements {
   void walk_other(const ast::Unknown& unknown, Scope& scope, Span span);
   void walk_other(const ast::Start& start, Scope& scope, Span span);
   void walk_other(const ast::Run& run, Scope& scope, Span span);
+  void walk_other(const ast::Sweep& sweep, Scope& scope, Span span);
   void walk_other(const ast::Guess& node, Scope& scope, Span span) {
     declared_.guesses.push_back({&node, scope, span});
   }

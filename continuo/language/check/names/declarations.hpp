@@ -120,6 +120,8 @@ struct Declarations {
   const ast::Run* run = nullptr;
   Span run_span{};
   const ast::Start* start = nullptr;
+  const ast::Sweep* sweep = nullptr;
+  Span sweep_span{};
 
   [[nodiscard]] bool has_modes() const { return modes.size() > 1; }
   [[nodiscard]] const Base& base_of_state(std::size_t state) const { return bases[base_index_of_state(state)]; }

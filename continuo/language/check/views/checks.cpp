@@ -88,8 +88,7 @@ Value Checks::value_at(const ast::ValueOf& text, Scope& scope, Span span, Check&
 }
 
 /// The left side: what is measured, and in which unit.
-Value Checks::measure(const ast::Check& text, Scope& scope, Check& check) {
-  const Span span = text.measure_span;
+Value Checks::measure(const ast::Measure& text, Span span, Scope& scope, Check& check) {
   const auto value = [&](const ast::Expression& expression) {
     const Value v = expressions_.values.number_of(expression, scope);
     check.node = v.node;
@@ -97,12 +96,12 @@ Value Checks::measure(const ast::Check& text, Scope& scope, Check& check) {
   };
   const Value time{.node = graph_.constant(0), .measured = expressions_.workspace.time.in_expressions()};
   const Value pure{.node = graph_.constant(0), .measured = Measured::known(Unit())};
-  if (const auto* of = std::get_if<ast::ValueOf>(&text.measure)) return value_at(*of, scope, span, check);
-  if (const auto* always = std::get_if<ast::AlwaysValueOf>(&text.measure)) {
+  if (const auto* of = std::get_if<ast::ValueOf>(&text)) return value_at(*of, scope, span, check);
+  if (const auto* always = std::get_if<ast::AlwaysValueOf>(&text)) {
     check.measure = Measure::always;
     return value(always->expression);
   }
-  if (std::holds_alternative<ast::EnergyDrift>(text.measure)) {
+  if (std::holds_alternative<ast::EnergyDrift>(text)) {
     check.measure = Measure::energy_drift;
     if (!model_.total_energy.valid()) {
       report_.fail("E281", span, "there is no energy to drift", {},
@@ -110,12 +109,12 @@ Value Checks::measure(const ast::Check& text, Scope& scope, Check& check) {
     }
     return pure;
   }
-  if (const auto* event = std::get_if<ast::TimeOfEvent>(&text.measure)) {
+  if (const auto* event = std::get_if<ast::TimeOfEvent>(&text)) {
     check.measure = Measure::event_time;
     check.moment = moment(event->event, scope, span);
     return time;
   }
-  if (const auto* events = std::get_if<ast::CountOfEvents>(&text.measure)) {
+  if (const auto* events = std::get_if<ast::CountOfEvents>(&text)) {
     check.measure = Measure::event_count;
     check.moment.kind = Moment::Kind::event;
     check.moment.event = events->event;
@@ -135,7 +134,7 @@ void Checks::add(const ast::Check& text, const Scope& outer, Span span) {
   check.relation = relation_of(text.relation);
   std::string quoted = report_.quote(span);
   check.text = quoted.substr(1, quoted.size() - 2);
-  Term left{text.value, measure(text, scope, check)};
+  Term left{text.value, measure(text.measure, text.measure_span, scope, check)};
   Term right{text.value, expressions_.values.number_of(text.value, scope)};
   if (left.value.bad || right.value.bad) return;
   if (!factor_between(right.value.measured, left.value.measured)) {

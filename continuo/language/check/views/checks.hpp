@@ -14,10 +14,11 @@ class Checks {
   Checks(Expressions& expressions, const Model& model)
       : expressions_(expressions), report_(expressions.report), graph_(expressions.workspace.graph), model_(model) {}
   [[nodiscard]] std::vector<Check> make();
+  /// What is measured, and in which unit.
+  [[nodiscard]] Value measure(const ast::Measure& text, Span span, Scope& scope, Check& check);
 
  private:
   void add(const ast::Check& text, const Scope& outer, Span span);
-  [[nodiscard]] Value measure(const ast::Check& text, Scope& scope, Check& check);
   [[nodiscard]] Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
   [[nodiscard]] Moment moment(const ast::Moment& text, Scope& scope, Span span);
   void check_event_name(const std::string& begin, Span span);
