@@ -1,0 +1,257 @@
+// Finds the values of a run by its number, runs the model with them, and reads what is kept.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/language/load.hpp>
+#include <continuo/results/csv_writer.hpp>
+#include <continuo/runs/watched_run.hpp>
+#include <continuo/simulation/recorded_run.hpp>
+#include <continuo/studies/sweep/sweep_run.hpp>
+
+namespace continuo::studies {
+namespace {
+
+using model::SweepAxis;
+using model::SweepKeep;
+using model::SweepPoints;
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+Sampling sampling_of(model::SweepSampling sampling) {
+  switch (sampling) {
+    case model::SweepSampling::latin_hypercube:
+      return Sampling::latin_hypercube;
+    case model::SweepSampling::monte_carlo:
+      return Sampling::monte_carlo;
+    case model::SweepSampling::grid:
+    case model::SweepSampling::sobol:
+      break;
+  }
+  return Sampling::sobol;
+}
+
+/// In the language a lognormal distribution is given by its median and the deviation of the logarithm, as in a prior of
+/// a fit.
+Result<Distribution> distribution_of(const model::SweepDistribution& text) {
+  std::vector<double> numbers = text.numbers;
+  if (text.kind == model::SweepDistribution::Kind::lognormal) {
+    const double variance = numbers[1] * numbers[1];
+    const double mean = numbers[0] * std::exp(variance / 2);
+    numbers = {mean, mean * std::sqrt(std::expm1(variance))};
+  }
+  return distribution(to_string(text.kind), numbers);
+}
+
+std::size_t width_of(const SweepKeep& keep) {
+  return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
+}
+
+/// The first error, with its code.
+std::string first_error(const std::vector<model::Diagnostic>& diagnostics) {
+  for (const model::Diagnostic& diagnostic : diagnostics)
+    if (diagnostic.severity == model::Severity::error)
+      return fmt::format("{} [{}]", diagnostic.message, diagnostic.code);
+  return {};
+}
+
+void append(std::string& text, const model::Overrides& values) {
+  for (const auto& [name, value] : values) text += name + '=' + results::number(value) + '\n';
+}
+
+/// All of an experiment that changes what a run leaves.
+std::string text_of(const model::Experiment& asked) {
+  std::string text = asked.method.value_or("") + '\n';
+  for (const std::optional<double>& number :
+       {asked.rtol, asked.step, asked.from, asked.to, asked.output, asked.max_step})
+    text += (number ? results::number(*number) : std::string()) + '\n';
+  text += std::to_string(asked.max_steps.value_or(0)) + (asked.output_steps ? " steps\n" : "\n");
+  for (const double tolerance : asked.atol) text += results::number(tolerance) + '\n';
+  for (const model::Overrides* values : {&asked.rtol_of, &asked.atol_of, &asked.parameters, &asked.initial}) {
+    text += ':';
+    append(text, *values);
+  }
+  return text;
+}
+
+}  // namespace
+
+PreparedSweep::Readable PreparedSweep::readable(model::Model model) {
+  const std::shared_ptr<const model::SweepPlan> plan = model.sweep;
+  model.checks.clear();
+  for (const SweepKeep& keep : plan->keeps)
+    if (keep.kind == SweepKeep::Kind::reading) model.checks.push_back(keep.reading);
+  Readable made;
+  made.program = model::compile(std::move(model));
+  made.nodes = std::make_shared<const KeptNodes>(made.program, plan->keeps);
+  return made;
+}
+
+Status PreparedSweep::add_dimensions() {
+  std::vector<std::pair<std::string, std::size_t>> files;
+  for (std::size_t a = 0; a < plan_->axes.size(); ++a) {
+    const SweepAxis& axis = plan_->axes[a];
+    if (axis.kind == SweepAxis::Kind::parameter) {
+      const std::size_t i = find_parameter(program_->model, axis.name);
+      decides_size_ = decides_size_ || program_->model.parameters[i].structural;
+    }
+    Dimension dimension{.axes = {a}};
+    if (const auto* points = std::get_if<SweepPoints>(&axis.values)) {
+      dimension.count = points->values.size();
+      const auto same = std::ranges::find(files, points->file, &std::pair<std::string, std::size_t>::first);
+      if (!points->file.empty() && same != files.end()) {
+        dimensions_[same->second].axes.push_back(a);
+        continue;
+      }
+      if (!points->file.empty()) files.emplace_back(points->file, dimensions_.size());
+    } else {
+      auto made = distribution_of(std::get<model::SweepDistribution>(axis.values));
+      if (!made) return {made.status().ending, made.status().message, axis.column()};
+      dimension.distribution = *made;
+    }
+    dimensions_.push_back(std::move(dimension));
+  }
+  if (plan_->sampling == model::SweepSampling::grid || dimensions_.empty()) return {};
+  auto sampler = Sampler::create({.sampling = sampling_of(plan_->sampling),
+                                  .runs = plan_->runs,
+                                  .dimensions = dimensions_.size(),
+                                  .seed = plan_->seed});
+  if (!sampler) return sampler.status();
+  sampler_ = *std::move(sampler);
+  return {};
+}
+
+Result<PreparedSweep> PreparedSweep::create(model::Model model, model::Experiment experiment) {
+  if (!model.sweep) return invalid_input("the model has no sweep: write sweep { k from 1 to 10 count 50 }");
+  PreparedSweep made;
+  made.plan_ = model.sweep;
+  for (const SweepKeep& keep : made.plan_->keeps) made.width_ += width_of(keep);
+  made.readable_ = readable(model);
+  made.program_ = model::compile(std::move(model));
+  made.experiment_ = std::move(experiment);
+  made.experiment_.keep_rows = false;
+  made.experiment_.progress = nullptr;
+  if (Status status = made.add_dimensions(); !status) return status;
+  return made;
+}
+
+std::vector<double> PreparedSweep::values(std::uint64_t run) const {
+  std::vector<double> values(plan_->axes.size());
+  std::uint64_t rest = run;
+  for (std::size_t d = dimensions_.size(); d-- > 0;) {
+    const Dimension& dimension = dimensions_[d];
+    const double u = sampler_ ? sampler_->at(run, d) : 0;
+    if (dimension.distribution) {
+      values[dimension.axes.front()] = quantile(*dimension.distribution, u);
+      continue;
+    }
+    const auto drawn = static_cast<std::size_t>(u * static_cast<double>(dimension.count));
+    const std::size_t place =
+        sampler_ ? std::min(drawn, dimension.count - 1) : static_cast<std::size_t>(rest % dimension.count);
+    rest /= dimension.count;
+    for (const std::size_t a : dimension.axes) values[a] = std::get<SweepPoints>(plan_->axes[a].values).values[place];
+  }
+  return values;
+}
+
+model::Experiment PreparedSweep::experiment(std::uint64_t run) const {
+  model::Experiment made = experiment_;
+  const std::vector<double> of_axes = values(run);
+  for (std::size_t a = 0; a < of_axes.size(); ++a) {
+    const SweepAxis& axis = plan_->axes[a];
+    (axis.kind == SweepAxis::Kind::initial ? made.initial : made.parameters)[axis.name] = of_axes[a];
+  }
+  return made;
+}
+
+/// One at a time: units are read by a library that knows no threads.
+std::optional<PreparedSweep::Readable> PreparedSweep::read_anew(const model::Experiment& experiment,
+                                                                SweepOutcome& outcome) const {
+  static std::mutex reading;
+  const std::scoped_lock lock(reading);
+  const model::Text& text = program_->model.text;
+  model::CheckOptions options;
+  for (const auto& [name, value] : experiment.parameters)
+    if (find_parameter(program_->model, name) != model::npos) options.overrides.emplace(name, value);
+  model::Loaded loaded = model::load(model::Source(text.path, text.content), options);
+  if (loaded.model && loaded.model->sweep) {
+    loaded.model->native = program_->model.native;
+    return readable(*std::move(loaded.model));
+  }
+  outcome.message = first_error(loaded.diagnostics);
+  return std::nullopt;
+}
+
+std::vector<double> PreparedSweep::kept_of(const Readable& readable, const model::Run& run,
+                                           const KeptValues& watched) const {
+  std::vector<double> kept;
+  kept.reserve(width_);
+  std::size_t reading = 0, seen = 0;
+  for (const SweepKeep& keep : readable.program->model.sweep->keeps) {
+    if (keep.kind == SweepKeep::Kind::reading) {
+      const model::CheckResult& result = run.checks[reading++];
+      kept.push_back(result.evaluated ? result.value : no_number);
+    } else {
+      const auto values = watched.of(seen++);
+      kept.insert(kept.end(), values.begin(), values.end());
+    }
+  }
+  kept.resize(width_, no_number);
+  return kept;
+}
+
+SweepOutcome PreparedSweep::run(std::uint64_t number) const {
+  SweepOutcome outcome{.ending = Ending::invalid_input, .t = no_number, .kept = {}, .message = {}};
+  outcome.kept.assign(width_, no_number);
+  const model::Experiment asked = experiment(number);
+  const auto anew = decides_size_ ? read_anew(asked, outcome) : std::nullopt;
+  if (decides_size_ && !anew) return outcome;
+  const Readable& used = anew ? *anew : readable_;
+  KeptValues watched(*used.nodes);
+  bool is_shown = true;
+  model::Simulated simulated;
+  if (used.nodes->empty()) {
+    simulated = runs::run(used.program, asked);
+  } else {
+    runs::WatchedRun seen = runs::run(used.program, asked, {}, watched);
+    is_shown = seen.is_shown;
+    simulated = std::move(seen.simulated);
+  }
+  outcome.message = first_error(simulated.diagnostics);
+  if (!simulated.run) return outcome;
+  outcome.ending = simulated.run->outcome.ending;
+  outcome.t = simulated.run->outcome.t;
+  if (!succeeded(outcome.ending)) return outcome;
+  if (!is_shown) {
+    outcome.ending = Ending::cannot_continue;
+    outcome.message = "the motion between its rows cannot be seen: keep values at times or events instead";
+    return outcome;
+  }
+  outcome.kept = kept_of(used, *simulated.run, watched);
+  return outcome;
+}
+
+std::string PreparedSweep::identity() const {
+  std::string text = program_->model.text.content;
+  text += '\n' + std::to_string(model::checksum_of_tables(*program_)) + '\n' + text_of(experiment_);
+  text += fmt::format("{} {} {}\n", plan_->runs, to_string(plan_->sampling), plan_->seed);
+  for (const SweepAxis& axis : plan_->axes) {
+    text += axis.column() + ':';
+    if (const auto* points = std::get_if<SweepPoints>(&axis.values)) {
+      for (const double value : points->values) text += ' ' + results::number(value);
+    } else {
+      const auto& drawn = std::get<model::SweepDistribution>(axis.values);
+      text += to_string(drawn.kind);
+      for (const double number : drawn.numbers) text += ' ' + results::number(number);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace continuo::studies

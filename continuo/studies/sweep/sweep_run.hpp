@@ -1,0 +1,90 @@
+// The runs of a sweep, each by its number: the values that it has, and what it leaves. A run is the same to the last
+// bit wherever and whenever it is made, and knows of no other.
+//
+//   const Result<PreparedSweep> sweep = PreparedSweep::create(*loaded.model, {.rtol = 1e-9});
+//   for (std::uint64_t run = 0; run < sweep->runs(); ++run) table.add(run, sweep->run(run));   // by as many threads
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <continuo/language/sweep.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/status/result.hpp>
+#include <continuo/studies/sweep/distribution.hpp>
+#include <continuo/studies/sweep/kept_values.hpp>
+#include <continuo/studies/sweep/sampling.hpp>
+
+namespace continuo::studies {
+
+/// What one run has left.
+struct SweepOutcome {
+  Ending ending = Ending::reached_end;  // invalid_input where it could not begin
+  double t = 0;                         // at its end; NaN where it could not begin
+  std::vector<double> kept{};           // NaN where there is no value; of a run that failed all are
+  std::string message{};                // why it failed, with the code of the message
+};
+
+/// A sweep ready to run.
+class PreparedSweep {
+ public:
+  /// That of the model, which has one; what the experiment changes holds for all runs. The reason where it cannot be
+  /// run at all.
+  [[nodiscard]] static Result<PreparedSweep> create(model::Model model, model::Experiment experiment);
+
+  /// What the text says.
+  [[nodiscard]] const model::SweepPlan& plan() const { return *plan_; }
+  /// The model of all runs.
+  [[nodiscard]] const model::Model& model() const { return program_->model; }
+  /// How many runs there are.
+  [[nodiscard]] std::uint64_t runs() const { return plan_->runs; }
+  /// How many numbers are kept of each: one, or of a series one for each time.
+  [[nodiscard]] std::size_t width() const { return width_; }
+
+  /// The values of what is varied, in the order of the axes.
+  [[nodiscard]] std::vector<double> values(std::uint64_t run) const;
+  /// The experiment of one run.
+  [[nodiscard]] model::Experiment experiment(std::uint64_t run) const;
+  /// Whether a parameter is varied that decides how many equations there are: each run reads the model anew.
+  [[nodiscard]] bool decides_size() const { return decides_size_; }
+  /// Makes the run.
+  [[nodiscard]] SweepOutcome run(std::uint64_t run) const;
+
+  /// A text that is the same for sweeps with the same results: model, tables, values, experiment.
+  [[nodiscard]] std::string identity() const;
+
+ private:
+  /// A model whose checks are the readings of the sweep, and what it is watched for.
+  struct Readable {
+    std::shared_ptr<const model::ModelProgram> program;
+    std::shared_ptr<const KeptNodes> nodes;
+  };
+  /// One dimension of the grid, or of the unit cube: an axis, or all axes of one file.
+  struct Dimension {
+    std::vector<std::size_t> axes{};
+    std::optional<Distribution> distribution{};
+    std::size_t count = 0;  // of the points
+  };
+
+  PreparedSweep() = default;
+  [[nodiscard]] static Readable readable(model::Model model);
+  [[nodiscard]] Status add_dimensions();
+  [[nodiscard]] std::optional<Readable> read_anew(const model::Experiment& experiment, SweepOutcome& outcome) const;
+  [[nodiscard]] std::vector<double> kept_of(const Readable& readable, const model::Run& run,
+                                            const KeptValues& watched) const;
+
+  std::shared_ptr<const model::SweepPlan> plan_;
+  std::shared_ptr<const model::ModelProgram> program_;  // of the model as it is
+  Readable readable_;
+  model::Experiment experiment_;
+  std::vector<Dimension> dimensions_;
+  std::optional<Sampler> sampler_;  // none of a grid
+  std::size_t width_ = 0;
+  bool decides_size_ = false;
+};
+
+}  // namespace continuo::studies

@@ -1,0 +1,44 @@
+// The runs of a sweep made chunk by chunk on several threads. Which thread makes a chunk, and when, changes nothing.
+//
+//   SweepWork work{.chunks = folder.missing(), .threads = 8};
+//   work.on_chunk = [&](std::uint64_t chunk, std::vector<SweepOutcome> made) { return folder.write(chunk, made); };
+//   const Status status = run_chunks(sweep, folder.identity(), work);
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <continuo/studies/sweep/sweep_chunks.hpp>
+#include <continuo/studies/sweep/sweep_run.hpp>
+
+namespace continuo::studies {
+
+/// The outcomes of a chunk; nothing where it was interrupted. `on_run` is called after each run.
+[[nodiscard]] std::optional<std::vector<SweepOutcome>> run_chunk(const PreparedSweep& sweep,
+                                                                 const SweepIdentity& identity, std::uint64_t chunk,
+                                                                 const std::atomic<bool>* interrupt,
+                                                                 const std::function<void()>& on_run = {});
+
+/// What is to be done, and who gets it.
+struct SweepWork {
+  std::vector<std::uint64_t> chunks;  // in rising order
+  std::size_t threads = 1;
+  bool in_order = false;  // on_chunk is called in the order of `chunks`; else as they come
+  const std::atomic<bool>* interrupt = nullptr;
+  /// Gets every chunk, one after the other. After a failure no more are begun.
+  std::function<Status(std::uint64_t chunk, std::vector<SweepOutcome> outcomes)> on_chunk{};
+  std::function<void(std::uint64_t runs)> progress{};  // how many runs have ended; one call at a time
+};
+
+/// Makes the chunks. The failure of `on_chunk`; Ending::interrupted where not all were made.
+Status run_chunks(const PreparedSweep& sweep, const SweepIdentity& identity, const SweepWork& work);
+
+/// The chunks of part `part` of `parts`, counted from 1: consecutive ones, as equal in number as can be.
+[[nodiscard]] std::vector<std::uint64_t> chunks_of_part(const SweepIdentity& identity, std::uint64_t part,
+                                                        std::uint64_t parts);
+
+}  // namespace continuo::studies
