@@ -24,12 +24,6 @@ long double standard_quantile(double u) {
   return -root_of_two * boost::math::erfc_inv(2 * static_cast<long double>(u), Quiet());
 }
 
-/// The square of deviation / mean.
-long double relative_variance(const Lognormal& d) {
-  const long double ratio = static_cast<long double>(d.deviation) / d.mean;
-  return ratio * ratio;
-}
-
 /// The value without spread, where infinity times zero would be no number.
 long double stretched(long double middle, long double deviation, long double z) {
   return deviation > 0 ? middle + deviation * z : middle;
@@ -42,9 +36,7 @@ long double value_at(const Normal& d, double u) {
   return stretched(d.mean, d.deviation, standard_quantile(u));
 }
 long double value_at(const Lognormal& d, double u) {
-  const long double variance = relative_variance(d);
-  return d.mean / std::sqrt(1 + variance) *
-         std::exp(stretched(0, std::sqrt(std::log1p(variance)), standard_quantile(u)));
+  return d.median * std::exp(stretched(0, d.deviation_of_logarithm, standard_quantile(u)));
 }
 long double value_at(const Triangular& d, long double u) {
   const long double low = d.low, mode = d.mode, high = d.high;
@@ -65,16 +57,17 @@ std::string fault_of(const Normal& d) {
   return {};
 }
 std::string fault_of(const Lognormal& d) {
-  if (d.mean <= 0)
+  if (d.median <= 0)
     return fmt::format(
-        "lognormal({}, {}): the mean is not above 0; both numbers are those of the quantity, not of its logarithm: "
-        "with "
-        "mean m and deviation s of the logarithm, the mean is exp(m + s^2/2) and the deviation that times "
-        "sqrt(exp(s^2) - 1)",
-        d.mean, d.deviation);
-  if (d.deviation < 0)
-    return fmt::format("lognormal({}, {}): the deviation is below 0; write the mean first, then the standard deviation",
-                       d.mean, d.deviation);
+        "lognormal({0}, {1}): the median is not above 0; write the median of the quantity first, exp(m) where m is the "
+        "mean "
+        "of its logarithm, then the standard deviation of the logarithm",
+        d.median, d.deviation_of_logarithm);
+  if (d.deviation_of_logarithm < 0)
+    return fmt::format(
+        "lognormal({}, {}): the deviation is below 0; write the median first, then the standard deviation of the "
+        "logarithm",
+        d.median, d.deviation_of_logarithm);
   return {};
 }
 std::string fault_of(const Triangular& d) {
@@ -94,7 +87,7 @@ bool is_finite(const Normal& d) {
   return std::isfinite(d.mean) && std::isfinite(d.deviation);
 }
 bool is_finite(const Lognormal& d) {
-  return std::isfinite(d.mean) && std::isfinite(d.deviation);
+  return std::isfinite(d.median) && std::isfinite(d.deviation_of_logarithm);
 }
 bool is_finite(const Triangular& d) {
   return std::isfinite(d.low) && std::isfinite(d.mode) && std::isfinite(d.high);
@@ -107,7 +100,8 @@ double mean_of(const Normal& d) {
   return d.mean;
 }
 double mean_of(const Lognormal& d) {
-  return d.mean;
+  const long double s = d.deviation_of_logarithm;
+  return static_cast<double>(d.median * std::exp(s * s / 2));
 }
 double mean_of(const Triangular& d) {
   return d.low / 3 + d.mode / 3 + d.high / 3;
@@ -120,7 +114,8 @@ double deviation_of(const Normal& d) {
   return d.deviation;
 }
 double deviation_of(const Lognormal& d) {
-  return d.deviation;
+  const long double s = d.deviation_of_logarithm;
+  return static_cast<double>(d.median * std::exp(s * s / 2) * std::sqrt(std::expm1(s * s)));
 }
 double deviation_of(const Triangular& d) {
   const long double left = static_cast<long double>(d.mode) - d.low, right = static_cast<long double>(d.high) - d.mode;
@@ -131,12 +126,13 @@ double deviation_of(const Triangular& d) {
 
 std::string_view distribution_parameters(std::string_view name) {
   if (name == "uniform") return "low, high";
-  if (name == "normal" || name == "lognormal") return "mean, deviation";
+  if (name == "normal") return "mean, deviation";
+  if (name == "lognormal") return "median, deviation of the logarithm";
   if (name == "triangular") return "low, mode, high";
   return {};
 }
 
-Result<Distribution> distribution(std::string_view name, std::span<const double> parameters) {
+Result<Distribution> distribution_named(std::string_view name, std::span<const double> parameters) {
   const std::string_view meaning = distribution_parameters(name);
   if (meaning.empty())
     return invalid_input(fmt::format("{} is no distribution; there are {}", name, fmt::join(distribution_names, ", ")));

@@ -1,6 +1,6 @@
 // How a quantity that is not known exactly is distributed: normal, uniform, lognormal, triangular.
 //
-//   const Result<Distribution> c = distribution("normal", std::array{0.5, 0.1});
+//   const Result<Distribution> c = distribution_named("normal", std::array{0.5, 0.1});
 //   quantile(*c, 0.975);  // 0.69600
 #pragma once
 #include <array>
@@ -22,10 +22,10 @@ struct Uniform {
 struct Normal {
   double mean = 0, deviation = 1;
 };
-/// The logarithm is normal. The mean and the deviation are those of the quantity itself, in its unit, as for `Normal`:
-/// one can take the place of the other, and a change of the unit changes nothing.
+/// The logarithm is normal. The median has the unit of the quantity; the deviation is that of the logarithm, a relative
+/// deviation where it is small. A prior of a fit has the same two numbers.
 struct Lognormal {
-  double mean = 1, deviation = 1;
+  double median = 1, deviation_of_logarithm = 1;
 };
 /// The density rises in a straight line from low to the mode and falls in a straight line to high.
 struct Triangular {
@@ -34,15 +34,16 @@ struct Triangular {
 /// Any of them, in whatever unit its numbers have.
 using Distribution = std::variant<Uniform, Normal, Lognormal, Triangular>;
 
-/// The names by which `distribution` knows them.
+/// The names by which `distribution_named` knows them.
 inline constexpr std::array<std::string_view, 4> distribution_names{"uniform", "normal", "lognormal", "triangular"};
 
-/// What the numbers of a distribution mean: "low, high", "mean, deviation", "low, mode, high"; empty for another name.
+/// What the numbers of a distribution mean: "low, high", "mean, deviation", "median, deviation of the logarithm",
+/// "low, mode, high"; empty for another name.
 [[nodiscard]] std::string_view distribution_parameters(std::string_view name);
 
 /// The distribution of this name with these numbers, in the order of `distribution_parameters`; the reason where there
 /// is none.
-[[nodiscard]] Result<Distribution> distribution(std::string_view name, std::span<const double> parameters);
+[[nodiscard]] Result<Distribution> distribution_named(std::string_view name, std::span<const double> parameters);
 
 /// What is wrong with a distribution, and how to mend it; a success where nothing is.
 Status check(const Distribution& distribution);

@@ -36,18 +36,6 @@ Sampling sampling_of(model::SweepSampling sampling) {
   return Sampling::sobol;
 }
 
-/// In the language a lognormal distribution is given by its median and the deviation of the logarithm, as in a prior of
-/// a fit.
-Result<Distribution> distribution_of(const model::SweepDistribution& text) {
-  std::vector<double> numbers = text.numbers;
-  if (text.kind == model::SweepDistribution::Kind::lognormal) {
-    const double variance = numbers[1] * numbers[1];
-    const double mean = numbers[0] * std::exp(variance / 2);
-    numbers = {mean, mean * std::sqrt(std::expm1(variance))};
-  }
-  return distribution(to_string(text.kind), numbers);
-}
-
 std::size_t width_of(const SweepKeep& keep) {
   return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
 }
@@ -110,7 +98,8 @@ Status PreparedSweep::add_dimensions() {
       }
       if (!points->file.empty()) files.emplace_back(points->file, dimensions_.size());
     } else {
-      auto made = distribution_of(std::get<model::SweepDistribution>(axis.values));
+      const auto& [kind, numbers] = std::get<model::SweepDistribution>(axis.values);
+      auto made = distribution_named(to_string(kind), numbers);
       if (!made) return {made.status().ending, made.status().message, axis.column()};
       dimension.distribution = *made;
     }
