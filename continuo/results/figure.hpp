@@ -14,12 +14,18 @@
 
 namespace continuo::results {
 
+/// The numbers from low to high.
+struct Range {
+  double low, high;
+};
+
 /// A curve, or a set of points, of a panel.
 struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
-  /// An area is a closed path, lightly filled. Discs have a radius each, on the scale of x, and a colour.
+  /// An area is a closed path, filled. Discs have a radius each, on the scale of x, and a colour. Bars stand on 0, with
+  /// an interval at the top of each.
   enum class Style {
     line,
     dashed_line,
@@ -30,7 +36,8 @@ struct Curve {
     empty_points,
     dots,
     area,
-    discs
+    discs,
+    bars
   };
   Style style = Style::line;
   std::optional<std::size_t> number{};  // of its colour in the palette; else its place in the panel
@@ -40,7 +47,17 @@ struct Curve {
     double radius = 0;
     std::string_view color;  // "#rrggbb", of a text that lasts
   };
-  std::vector<Disc> discs{};  // one for each point of that style
+  std::vector<Disc> discs{};       // one for each point of that style
+  std::vector<Range> intervals{};  // one for each bar; NaN where there is none
+  double fill = 0.12;              // of an area: from 0, nothing, to 1, its colour alone
+  double bar_width = 0.8;          // on the scale of x
+};
+
+/// A plane in cells, each with the colour of its value.
+struct Cells {
+  std::vector<double> x_edges{}, y_edges{};  // rising, one more than there are cells
+  std::vector<double> values{};              // row by row from below; NaN: none
+  std::string label{};                       // of the scale of colours
 };
 
 /// A pair of axes with its curves.
@@ -56,6 +73,8 @@ struct Panel {
   bool zero_lines = false;                   // through the origin
   double least_width = 0, least_height = 0;  // of the values that the axes show: they magnify nothing smaller
   bool no_numbers = false;                   // at the axes
+  std::vector<std::string> x_names{};        // of the places 0, 1, 2, ... on the x axis, instead of numbers
+  Cells cells{};                             // below the curves
 };
 
 /// How large a picture is, in pixels; zero where nobody has said.
@@ -68,6 +87,7 @@ struct Figure {
   std::string title;
   std::vector<Panel> panels;
   PictureSize size{};
+  bool is_dark = false;  // light on a dark background
 };
 
 /// The colour of the curve of this number where it names none.
@@ -84,11 +104,6 @@ Status draw(const Figure& figure, const std::string& path);
 
 /// The program for gnuplot that `draw` runs.
 [[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& path);
-
-/// The numbers from low to high.
-struct Range {
-  double low, high;
-};
 
 /// An axis shows at least so many times the tolerance of its quantity: what a run has not computed is not magnified,
 /// and an energy that is conserved is a level line.

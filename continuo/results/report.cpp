@@ -8,7 +8,7 @@ namespace continuo::results {
 
 namespace {
 
-constexpr std::string_view style = R"(
+constexpr std::string_view style_sheet = R"(
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { margin-bottom: 0.2rem; }
@@ -87,7 +87,7 @@ std::string report_page(std::string_view title, std::string_view heading, std::s
   std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + escaped(title) +
           "</title>\n<style>";
-  page += style;
+  page += style_sheet;
   page += "</style>\n</head>\n<body>\n<h1>" + escaped(title) + "</h1>\n";
   if (!heading.empty()) page += "<p>" + escaped(heading.substr(0, heading.find("\n\n"))) + "</p>\n";
   for (std::size_t i = 0; i < sections.size(); ++i) append_section(page, sections[i], i);
