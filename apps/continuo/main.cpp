@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     return usage;
   }
   const std::array verbs{
-      OwnVerb{"run", [](CLI::App& app, ExitCode& exit) { add_run(app, exit, {}, film); }},
+      OwnVerb{"run", [](CLI::App& app, ExitCode& exit) { add_run(app, exit, {.write_film = film}); }},
       OwnVerb{"replay", add_replay},
       OwnVerb{"resume", add_resume},
       OwnVerb{"view", add_view},

@@ -4,6 +4,7 @@
 #include <apps/continuo/command.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/boundary_families.hpp>
+#include <apps/continuo/studies/run_of_sweep.hpp>
 #include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -17,7 +18,10 @@ int main(int argc, char** argv) {
     return usage;
   }
   const std::array verbs{
-      OwnVerb{"run", [](CLI::App& app, ExitCode& exit) { add_run(app, exit, show_families, {}); }},
+      OwnVerb{"run",
+              [](CLI::App& app, ExitCode& exit) {
+                add_run(app, exit, {.show_families = show_families, .take_sweep_run = take_sweep_run});
+              }},
       OwnVerb{"compare", add_compare},
       OwnVerb{"converge", add_converge},
       OwnVerb{"stability", add_stability},
@@ -27,6 +31,7 @@ int main(int argc, char** argv) {
       OwnVerb{"orbit", add_orbit},
       OwnVerb{"explore", add_explore},
       OwnVerb{"sense", add_sense},
+      OwnVerb{"sweep", add_sweep},
       OwnVerb{"fit", add_fit},
       OwnVerb{"help", add_help},
   };

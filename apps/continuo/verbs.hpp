@@ -29,6 +29,7 @@ void add_phase(CLI::App& app, ExitCode& exit);
 void add_orbit(CLI::App& app, ExitCode& exit);
 void add_explore(CLI::App& app, ExitCode& exit);
 void add_sense(CLI::App& app, ExitCode& exit);
+void add_sweep(CLI::App& app, ExitCode& exit);
 void add_fit(CLI::App& app, ExitCode& exit);
 
 // Of both; `run` is in verbs/run.hpp.

@@ -148,6 +148,8 @@ def studies():
     answer(["sense", "models/bouncing_ball.sim", "--param", "g"])
     answer(["sense", "models/thermostat.sim", "--param", "tau", "--of", "period"], 0, layout="continuo.sense_period/1")
     answer(["sense", "rest.sim", "--param", "a", "--of", "equilibrium"], 0, layout="continuo.sense_equilibrium/1")
+    answer(["sweep", "models/mass_spring_damper.sim", "--vary", "k from 1 to 4 count 3", "--keep",
+            "max(x), x at 0..1 by 0.5"], 0, layout="continuo.sweep/2")
     call(["run", "models/mass_spring_damper.sim", "-o", "measured.csv"])
     answer(["fit", "models/mass_spring_damper.sim", "few.csv", "--param", "k,c", "--profile"], layout="continuo.fit/1")
 
@@ -196,7 +198,8 @@ def live_view():
 on_a_model = {"run": "{}", "check": "{}", "info": "{}", "verify": "{}", "methods": "--why {}", "report": "{} -o r.html",
               "compare": "{} --methods rk4 --step 0.1", "converge": "{} --methods rk4", "steady": "{}",
               "stability": "rk4 --model {}", "linearize": "{}", "phase": "{}", "orbit": "{}", "explore": "{}",
-              "sense": "{} --param k", "fit": "{} few.csv --param k", "view": "{} --export v.html"}
+              "sense": "{} --param k", "sweep": "{} --vary x(0)in(1,2)", "fit": "{} few.csv --param k",
+              "view": "{} --export v.html"}
 # What they do not: their own argument.
 others = {"replay": "{}", "resume": "{}"}
 one_exit_code_for_a_file_that = {"is not there": ("nothing.sim", 1), "is a folder without models": ("empty", 1)}

@@ -284,9 +284,13 @@ std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progr
 Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
   if (!readable(options.file))
     return {.exit = usage, .loaded = {model::Source("", ""), {}, {}}, .program = {}, .experiment = {}};
-  Prepared prepared{.exit = done, .loaded = load_model(options.file), .program = {}, .experiment = {}};
+  Prepared prepared{
+      .exit = done,
+      .loaded = options.sweep.empty() ? load_model(options.file) : load_with_sweep(options.file, options.sweep),
+      .program = {},
+      .experiment = {}};
   if (!prepared.loaded) {
-    prepared.exit = wrong_model;
+    prepared.exit = prepared.loaded.diagnostics.empty() ? usage : wrong_model;
     return prepared;
   }
   if (worlds == Worlds::refused) {
@@ -301,8 +305,10 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
     prepared.exit = usage;
     return prepared;
   }
-  if (decides_a_size(*prepared.loaded.model, *values)) {
-    prepared.decides_size = true;
+  const bool decides_size = decides_a_size(*prepared.loaded.model, *values);
+  const bool decides_sweep = options.sweep.is_wanted && !values->empty();
+  if (decides_size || decides_sweep) {
+    prepared.decides_size = decides_size;
     prepared.loaded = load_model(prepared.loaded.source, {.overrides = *values});
     if (!prepared.loaded) {
       prepared.exit = wrong_model;

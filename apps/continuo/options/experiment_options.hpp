@@ -9,6 +9,7 @@
 
 #include <CLI/App.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/sweep_words.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 
@@ -28,6 +29,7 @@ struct ExperimentOptions {
   std::optional<double> step, until, output, max_step;
   std::optional<std::size_t> max_steps;
   std::string native = "auto";  // "auto", "always", "never"
+  SweepWords sweep;
 
   /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
   /// rows of it are wanted makes no difference.

@@ -31,7 +31,11 @@ Program program_for(int argc, char** argv) {
       return other != nullptr && other->program == Program::studies;
     });
   }
-  if (name == "run") return any_behind([](const char* word) { return std::string_view(word).starts_with("--family"); });
+  if (name == "run") {
+    return any_behind([](const char* word) {
+      return std::string_view(word).starts_with("--family") || std::string_view(word).starts_with("--sweep-run");
+    });
+  }
   return verb_called(name)->program;
 }
 

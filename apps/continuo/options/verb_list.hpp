@@ -36,6 +36,7 @@ inline constexpr std::array all_verbs{
     ListedVerb{"explore", "Gives an overview of a model: run, equilibria, orbits, parameters", Program::studies},
     ListedVerb{"sense", "Computes sensitivities: derivatives of a motion by parameters and initial values",
                Program::studies},
+    ListedVerb{"sweep", "Runs a model many times with varied parameters, and computes statistics", Program::studies},
     ListedVerb{"fit", "Finds parameters and initial values from measurements", Program::studies},
     ListedVerb{"methods", "Lists the integration methods"},
     ListedVerb{"explain", "Explains the code of a message"},
@@ -50,8 +51,8 @@ consteval const ListedVerb& listed(std::string_view name) {
 }
 
 /// The program that parses this command line: that of the first word that names a verb, which is also the verb that
-/// CLI11 takes. `help` and `run` are in both programs: the help of a study, and families of solutions, are for the
-/// second.
+/// CLI11 takes. `help` and `run` are in both programs: the help of a study, families of solutions and runs of a
+/// sweep are for the second.
 Program program_for(int argc, char** argv);
 
 }  // namespace continuo::app

@@ -21,6 +21,7 @@
 #include <apps/continuo/verbs/run.hpp>
 #include <fmt/format.h>
 
+#include <continuo/language/sweep.hpp>
 #include <continuo/results/motion_curves.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/watched_run.hpp>
@@ -35,6 +36,7 @@ struct RunRequest {
   bool estimate_error = false;
   BoundaryOptions boundary;
   RecordTo record;
+  std::optional<std::uint64_t> sweep_run;
 };
 
 /// Where the run is recorded as it goes; null where nobody wants that.
@@ -44,7 +46,7 @@ runs::Log* log_of(const RunRequest& request, const Prepared& prepared, RunFile& 
   head.file = prepared.loaded.source.name();
   head.text = prepared.loaded.source.text();
   head.decides_size = prepared.decides_size;
-  head.as_written = request.experiment.as_written();
+  head.as_written = !request.sweep_run && request.experiment.as_written();
   head.experiment = prepared.experiment;
   return file.begin(*prepared.program, std::move(head));
 }
@@ -120,7 +122,7 @@ model::Simulated run_and_show(const Prepared& prepared, const runs::RunRequest& 
   return std::move(watched.simulated);
 }
 
-ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteFilm& write_film) {
+ExitCode run(RunRequest request, const RunParts& parts) {
   const std::vector<SweepText> swept = take_sweep(request.experiment);
   if (!reads_standard_input_once({request.experiment.file, request.boundary.guess, request.experiment.initial_from}) ||
       !can_be_written(request.outputs) || !can_be_written(request.record))
@@ -134,13 +136,20 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteF
   }
   if (prepared.exit != done) return prepared.exit;
   if (has_no_method(request, prepared.program->model)) return usage;
+  if (request.sweep_run && !swept.empty()) {
+    say(fmt::format("--sweep-run is one run, and {} asks for several", swept.front().text));
+    return usage;
+  }
   if (!swept.empty()) return sweep(request, swept, prepared);
+  if (request.sweep_run) {
+    if (const ExitCode exit = parts.take_sweep_run(prepared, *request.sweep_run); exit != done) return exit;
+  }
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
   if (!request.boundary.family.empty()) {
     if (!shows_families(request)) return usage;
     const auto range = read_family(request.boundary, prepared);
-    return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
+    return range ? parts.show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
   }
   const std::string film_path = moves(request.outputs.plot) ? std::exchange(request.outputs.plot, {}) : std::string();
   if (!film_path.empty() && !request.outputs.plot_texts.empty()) {
@@ -165,16 +174,17 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families, const WriteF
   }();
   const bool is_recorded = file.finish(simulated);
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
-                             request.experiment.as_written() && request.boundary.as_written(), motion, curves->get());
+                             !request.sweep_run && request.experiment.as_written() && request.boundary.as_written(),
+                             motion, curves->get());
   if (!film_path.empty() && exit == done) {
-    if (const ExitCode filmed = write_film(request.experiment, film_path); filmed != done) return filmed;
+    if (const ExitCode filmed = parts.write_film(request.experiment, film_path); filmed != done) return filmed;
   }
   return is_recorded || exit != done ? exit : usage;
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families, WriteFilm write_film) {
+void add_run(CLI::App& app, ExitCode& exit, RunParts parts) {
   static constexpr std::string_view examples =
       "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
       "  continuo run ball.sim -o ball.csv --plot ball.svg          all rows, and a plot\n"
@@ -209,8 +219,13 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families, WriteFil
   verb->add_flag("--estimate-error", request->estimate_error,
                  "Estimates the global error by a second run with a tolerance a hundred times smaller");
   add_boundary(*verb, request->boundary);
-  verb->callback([&exit, request, show_families = std::move(show_families), write_film = std::move(write_film)] {
-    exit = run(*request, show_families, write_film);
+  verb->add_option("--sweep-run", request->sweep_run, "One run of the model's sweep, by its number, to the same bits")
+      ->check(count_from(0, model::most_sweep_runs))
+      ->type_name("N");
+  add_sweep_words(*verb, request->experiment.sweep, false);
+  verb->callback([&exit, request, parts = std::move(parts)] {
+    request->experiment.sweep.is_wanted = request->sweep_run.has_value();
+    exit = run(*request, parts);
   });
 }
 

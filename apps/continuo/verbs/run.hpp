@@ -1,5 +1,6 @@
 // The verb run, whose families of solutions only one of the two programs can compute.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -23,7 +24,16 @@ using WriteFilm = std::function<ExitCode(const ExperimentOptions&, const std::st
 /// That of the view: view.cpp.
 ExitCode film(const ExperimentOptions& experiment, const std::string& path);
 
-/// `show_families` is empty in the program that never parses --family (program_for), and `write_film` in the other one.
-void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families, WriteFilm write_film);
+/// Gives the experiment the values of one run of the model's sweep: studies/run_of_sweep.hpp.
+using TakeSweepRun = std::function<ExitCode(Prepared& prepared, std::uint64_t run)>;
+
+/// What only one of the two programs can do is empty in the other one, which never parses the words for it
+/// (program_for).
+struct RunParts {
+  ShowFamilies show_families{};
+  WriteFilm write_film{};
+  TakeSweepRun take_sweep_run{};
+};
+void add_run(CLI::App& app, ExitCode& exit, RunParts parts);
 
 }  // namespace continuo::app
