@@ -14,6 +14,10 @@ std::string_view to_string(SweepSampling sampling) {
       return "latin_hypercube";
     case SweepSampling::monte_carlo:
       return "monte_carlo";
+    case SweepSampling::indices:
+      return "indices";
+    case SweepSampling::morris:
+      return "morris";
   }
   return "";
 }

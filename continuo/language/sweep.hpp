@@ -15,8 +15,8 @@
 namespace continuo::model {
 
 /// How the runs are chosen: every combination of the values, or points of the unit cube that the distributions map to
-/// values.
-enum class SweepSampling { grid, sobol, latin_hypercube, monte_carlo };
+/// values; of the last two, those for Sobol' indices, and those for the screening of Morris.
+enum class SweepSampling { grid, sobol, latin_hypercube, monte_carlo, indices, morris };
 
 /// The word of the language: "latin_hypercube".
 [[nodiscard]] std::string_view to_string(SweepSampling sampling);

@@ -15,7 +15,8 @@ namespace {
 using ast::Expression;
 
 constexpr std::array<std::string_view, 4> distribution_words = {"uniform", "normal", "lognormal", "triangular"};
-constexpr std::array<std::string_view, 3> sampling_words = {"sobol", "latin_hypercube", "monte_carlo"};
+constexpr std::array<std::string_view, 5> sampling_words = {"sobol", "latin_hypercube", "monte_carlo", "indices",
+                                                            "morris"};
 
 constexpr std::string_view help_for_axis =
     "write k from 1 to 10 count 50, k in (1, 2, 5), k normal(5, 0.5), uniform(1, 10), lognormal(5, 0.1), "
@@ -127,7 +128,7 @@ ast::SweepRuns Parser::parse_sweep_runs() {
     }
     runs.sampling = ast::Identifier{word, advance().span};
   }
-  expect_statement_end({"sobol", "latin_hypercube", "monte_carlo", "seed"});
+  expect_statement_end({"sobol", "latin_hypercube", "monte_carlo", "indices", "morris", "seed"});
   return runs;
 }
 

@@ -43,6 +43,8 @@ class SobolPoints {
   [[nodiscard]] static Result<SobolPoints> create(const SobolDesign& design);
   /// The coordinate of a run.
   [[nodiscard]] double at(std::uint64_t run, std::size_t factor) const;
+  /// What they are of.
+  [[nodiscard]] const SobolDesign& design() const { return design_; }
 
  private:
   SobolPoints(const SobolDesign& design, Sampler sampler) : design_(design), sampler_(std::move(sampler)) {}

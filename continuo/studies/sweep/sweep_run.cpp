@@ -23,19 +23,6 @@ using model::SweepPoints;
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-Sampling sampling_of(model::SweepSampling sampling) {
-  switch (sampling) {
-    case model::SweepSampling::latin_hypercube:
-      return Sampling::latin_hypercube;
-    case model::SweepSampling::monte_carlo:
-      return Sampling::monte_carlo;
-    case model::SweepSampling::grid:
-    case model::SweepSampling::sobol:
-      break;
-  }
-  return Sampling::sobol;
-}
-
 std::size_t width_of(const SweepKeep& keep) {
   return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
 }
@@ -106,12 +93,12 @@ Status PreparedSweep::add_dimensions() {
     dimensions_.push_back(std::move(dimension));
   }
   if (plan_->sampling == model::SweepSampling::grid || dimensions_.empty()) return {};
-  auto sampler = Sampler::create({.sampling = sampling_of(plan_->sampling),
-                                  .runs = plan_->runs,
-                                  .dimensions = dimensions_.size(),
-                                  .seed = plan_->seed});
-  if (!sampler) return sampler.status();
-  sampler_ = *std::move(sampler);
+  auto design = SweepDesign::create(plan_->sampling, plan_->runs, dimensions_.size(), plan_->seed);
+  if (!design) return design.status();
+  design_ = *std::move(design);
+  auto plan = std::make_shared<model::SweepPlan>(*plan_);
+  plan->runs = static_cast<std::size_t>(design_->runs());
+  plan_ = std::move(plan);
   return {};
 }
 
@@ -129,19 +116,28 @@ Result<PreparedSweep> PreparedSweep::create(model::Model model, model::Experimen
   return made;
 }
 
+std::vector<std::string> PreparedSweep::dimension_names() const {
+  std::vector<std::string> names;
+  for (const Dimension& dimension : dimensions_) {
+    std::string& name = names.emplace_back();
+    for (const std::size_t a : dimension.axes) name += (name.empty() ? "" : ", ") + plan_->axes[a].column();
+  }
+  return names;
+}
+
 std::vector<double> PreparedSweep::values(std::uint64_t run) const {
   std::vector<double> values(plan_->axes.size());
   std::uint64_t rest = run;
   for (std::size_t d = dimensions_.size(); d-- > 0;) {
     const Dimension& dimension = dimensions_[d];
-    const double u = sampler_ ? sampler_->at(run, d) : 0;
+    const double u = design_ ? design_->at(run, d) : 0;
     if (dimension.distribution) {
       values[dimension.axes.front()] = quantile(*dimension.distribution, u);
       continue;
     }
     const auto drawn = static_cast<std::size_t>(u * static_cast<double>(dimension.count));
     const std::size_t place =
-        sampler_ ? std::min(drawn, dimension.count - 1) : static_cast<std::size_t>(rest % dimension.count);
+        design_ ? std::min(drawn, dimension.count - 1) : static_cast<std::size_t>(rest % dimension.count);
     rest /= dimension.count;
     for (const std::size_t a : dimension.axes) values[a] = std::get<SweepPoints>(plan_->axes[a].values).values[place];
   }

@@ -17,7 +17,7 @@
 #include <continuo/status/result.hpp>
 #include <continuo/studies/sweep/distribution.hpp>
 #include <continuo/studies/sweep/kept_values.hpp>
-#include <continuo/studies/sweep/sampling.hpp>
+#include <continuo/studies/sweep/sweep_design.hpp>
 
 namespace continuo::studies {
 
@@ -36,8 +36,12 @@ class PreparedSweep {
   /// run at all.
   [[nodiscard]] static Result<PreparedSweep> create(model::Model model, model::Experiment experiment);
 
-  /// What the text says.
+  /// What the text says, with as many runs as are made.
   [[nodiscard]] const model::SweepPlan& plan() const { return *plan_; }
+  /// Where the runs have their points; null of a grid.
+  [[nodiscard]] const SweepDesign* design() const { return design_ ? &*design_ : nullptr; }
+  /// What is varied together with one coordinate of the design: "k", or "m, c" of one file.
+  [[nodiscard]] std::vector<std::string> dimension_names() const;
   /// The model of all runs.
   [[nodiscard]] const model::Model& model() const { return program_->model; }
   /// How many runs there are.
@@ -82,7 +86,7 @@ class PreparedSweep {
   Readable readable_;
   model::Experiment experiment_;
   std::vector<Dimension> dimensions_;
-  std::optional<Sampler> sampler_;  // none of a grid
+  std::optional<SweepDesign> design_;  // none of a grid
   std::size_t width_ = 0;
   bool decides_size_ = false;
 };

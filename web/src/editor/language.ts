@@ -7,7 +7,7 @@ const statements = new Set([
 ]);
 const words = new Set([
   "in", "if", "then", "else", "and", "or", "not", "from", "sum", "where", "go", "mark", "stop", "after", "before", "falls", "rises", "crosses", "through",
-  "method", "step", "tol", "abs", "max", "realtime", "steps", "log", "per", "decade", "against", "within", "always", "drift", "count", "of", "events", "event", "time", "end", "key", "to", "seed", "sobol", "latin_hypercube", "monte_carlo",
+  "method", "step", "tol", "abs", "max", "realtime", "steps", "log", "per", "decade", "against", "within", "always", "drift", "count", "of", "events", "event", "time", "end", "key", "to", "seed", "sobol", "latin_hypercube", "monte_carlo", "indices", "morris",
   "drag", "color", "label", "radius", "size", "angle", "turns", "width", "length", "scale",
 ]);
 // These begin something only where a name, a number or a bracket follows: `body ball`, `wall (0, 1)`. Elsewhere they are names.

@@ -20,7 +20,8 @@ constexpr std::size_t most_states_by_themselves = 100;
 constexpr double largest_seed = 9007199254740992.0;  // all whole numbers up to here are doubles
 
 SweepSampling sampling_of(std::string_view word) {
-  for (const SweepSampling one : {SweepSampling::latin_hypercube, SweepSampling::monte_carlo})
+  for (const SweepSampling one :
+       {SweepSampling::latin_hypercube, SweepSampling::monte_carlo, SweepSampling::indices, SweepSampling::morris})
     if (to_string(one) == word) return one;
   return SweepSampling::sobol;
 }
