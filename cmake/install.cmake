@@ -39,6 +39,9 @@ install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/C
 if(TARGET continuo)
   get_property(loaded GLOBAL PROPERTY CONTINUO_MODULE_TARGETS)
   install(TARGETS continuo)
+  if(TARGET continuo-mpi)
+    install(TARGETS continuo-mpi)
+  endif()
   install(TARGETS continuo-studies ${loaded} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo
                                              LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/manual/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

@@ -36,6 +36,8 @@ packages_to_test=(
   "python3-pandas         -            reads our CSV, as users do"
   "python3-scipy          -            compared with on docs/coming_from_scipy.md"
   "python3-jsonschema     -            judges the answers to --json by their schemas"
+  "libopenmpi-dev         -            sweeps on many processors: continuo-mpi"
+  "openmpi-bin            mpirun       starts them"
   "python3-clang-19       -            lists the public functions, all of which must be documented"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"

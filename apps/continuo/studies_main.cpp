@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
       OwnVerb{"orbit", add_orbit},
       OwnVerb{"explore", add_explore},
       OwnVerb{"sense", add_sense},
-      OwnVerb{"sweep", add_sweep},
+      OwnVerb{"sweep", [](CLI::App& app, ExitCode& exit) { add_sweep(app, exit); }},
       OwnVerb{"fit", add_fit},
       OwnVerb{"help", add_help},
   };

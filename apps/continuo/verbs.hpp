@@ -6,6 +6,8 @@
 
 namespace continuo::app {
 
+class SweepRanks;
+
 // Of the program continuo.
 void add_replay(CLI::App& app, ExitCode& exit);
 void add_resume(CLI::App& app, ExitCode& exit);
@@ -29,7 +31,8 @@ void add_phase(CLI::App& app, ExitCode& exit);
 void add_orbit(CLI::App& app, ExitCode& exit);
 void add_explore(CLI::App& app, ExitCode& exit);
 void add_sense(CLI::App& app, ExitCode& exit);
-void add_sweep(CLI::App& app, ExitCode& exit);
+/// `ranks`: processes that make the sweep together; null where there is one.
+void add_sweep(CLI::App& app, ExitCode& exit, SweepRanks* ranks = nullptr);
 void add_fit(CLI::App& app, ExitCode& exit);
 
 // Of both; `run` is in verbs/run.hpp.

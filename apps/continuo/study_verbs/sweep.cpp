@@ -1,7 +1,9 @@
 // continuo sweep FILE: many runs of a model with other parameters, initial values and inputs, and what they leave.
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -13,6 +15,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/studies/sweep_ranks.hpp>
 #include <apps/continuo/studies/sweep_report.hpp>
 #include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
@@ -46,6 +49,7 @@ struct SweepOptions {
   std::string part;
   std::size_t threads = 0;  // 0: as many as there are cores
   bool resume = false, merge = false, json = false;
+  SweepRanks* ranks = nullptr;  // those that make it together with this process
 };
 
 std::optional<Part> read_part(const std::string& text) {
@@ -63,6 +67,7 @@ bool fit_together(const SweepOptions& options) {
   const char* needs_file = !options.part.empty() ? "--part"
                            : options.merge       ? "--merge"
                            : options.resume      ? "--resume"
+                           : options.ranks       ? "a sweep by several processes"
                                                  : "";
   const bool is_file = !options.out.empty() && options.out != "-";
   if (*needs_file != '\0' && !is_file) {
@@ -85,7 +90,8 @@ std::string folder_of(const SweepOptions& options) {
 }
 
 std::size_t threads_of(const SweepOptions& options) {
-  return options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t usual = options.ranks ? 1 : std::max(1U, std::thread::hardware_concurrency());
+  return options.threads > 0 ? options.threads : usual;
 }
 
 std::vector<std::uint64_t> all_chunks(const SweepIdentity& identity) {
@@ -101,6 +107,17 @@ class Study {
       : options_(options), sweep_(sweep), identity_(identity_of(sweep, version_of_program())), report_(sweep) {}
 
   ExitCode go() {
+    if (options_.ranks && !options_.ranks->agree(identity_.hash)) {
+      say("the processes do not have the same sweep: each needs the same model, the same options and the same version "
+          "of Continuo, and files in a folder that all machines share");
+      return usage;
+    }
+    return !options_.ranks || options_.ranks->is_first() ? lead() : help();
+  }
+
+ private:
+  /// Makes the sweep, and the table; with the help of the other ranks where there are some.
+  ExitCode lead() {
     if (options_.out.empty() || options_.out == "-") return without_folder();
     const bool is_new = !SweepFolder::exists(folder_of(options_));
     if (options_.merge && is_new) {
@@ -120,7 +137,24 @@ class Study {
     return make(*folder);
   }
 
- private:
+  /// Makes runs for the first rank, which says what there is to say.
+  ExitCode help() {
+    const auto chunks = options_.ranks->share(std::nullopt);
+    if (!chunks) return done;
+    const auto folder = SweepFolder::open(folder_of(options_), identity_);
+    const Status status = options_.ranks->join(folder ? fill(*folder, *chunks) : folder.status());
+    if (status || status.ending == Ending::interrupted || status.ending == Ending::cannot_continue) return done;
+    say(describe(status));
+    return usage;
+  }
+
+  Status fill(const SweepFolder& folder, std::vector<std::uint64_t> chunks) const {
+    studies::SweepWork work = work_of(std::move(chunks));
+    work.on_chunk = [&](std::uint64_t chunk, const Outcomes& outcomes) { return folder.write(chunk, outcomes); };
+    if (options_.ranks) work.take = [ranks = options_.ranks] { return ranks->take(); };
+    return run(work);
+  }
+
   /// Rows go straight to where they are wanted, in the order of the runs.
   ExitCode without_folder() {
     std::optional<studies::SweepTable> table;
@@ -151,9 +185,10 @@ class Study {
     Progress progress;
     std::uint64_t runs = 0;
     for (const std::uint64_t chunk : work.chunks) runs += identity_.size(chunk);
+    const auto ranks = static_cast<double>(options_.ranks ? options_.ranks->count() : 1);
     if (const auto show = progress.parts())
-      work.progress = [show, all = static_cast<double>(runs)](std::uint64_t done_so_far) {
-        show(static_cast<double>(done_so_far) / all);
+      work.progress = [show, all = static_cast<double>(runs) / ranks](std::uint64_t done_so_far) {
+        show(std::min(1.0, static_cast<double>(done_so_far) / all));
       };
     return run_chunks(sweep_, identity_, work);
   }
@@ -190,15 +225,25 @@ class Study {
   ExitCode make(const SweepFolder& folder) {
     const auto chunks = chunks_to_make(folder);
     if (!chunks) return usage;
-    studies::SweepWork work = work_of(*chunks);
-    work.on_chunk = [&](std::uint64_t chunk, const Outcomes& outcomes) { return folder.write(chunk, outcomes); };
-    const Status status = run(work);
+    if (options_.ranks) (void)options_.ranks->share(*chunks);
+    Status status = fill(folder, *chunks);
+    if (options_.ranks) status = options_.ranks->join(status);
     if (!status) return stopped(folder, status);
+    if (options_.ranks) wait_for(folder, *chunks);
     if (options_.part.empty()) return merge(folder);
     mention(fmt::format("part {} is in {}; when all parts are there, --merge makes {}", options_.part, folder.path(),
                         options_.out));
     if (options_.json) answer_json(folder.path());
     return done;
+  }
+
+  /// A machine may see late what others have written in a folder that they share: some file systems look half a minute
+  /// old.
+  static void wait_for(const SweepFolder& folder, const std::vector<std::uint64_t>& chunks) {
+    constexpr int most_seconds = 90;
+    const auto is_there = [&](std::uint64_t chunk) { return std::filesystem::exists(folder.file(chunk)); };
+    for (int i = 0; i < most_seconds && !std::ranges::all_of(chunks, is_there); ++i)
+      std::this_thread::sleep_for(std::chrono::seconds(1));
   }
 
   /// What was done is kept, and what it was is said.
@@ -297,7 +342,7 @@ ExitCode sweep(SweepOptions options) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app, ExitCode& exit) {
+void add_sweep(CLI::App& app, ExitCode& exit, SweepRanks* ranks) {
   static constexpr std::string_view examples =
       "  continuo sweep spring.sim -o spring.nc                      as the model's sweep says; opens in xarray\n"
       "  continuo sweep spring.sim --vary \"k from 1 to 10 [N/m] count 50\" --keep \"max(abs(x)) as peak\"\n"
@@ -310,6 +355,7 @@ void add_sweep(CLI::App& app, ExitCode& exit) {
   verb->json_examples = {
       "continuo sweep models/mass_spring_damper.sim --vary \"k from 1 to 4 count 3\" --keep \"max(x)\" --json"};
   auto options = std::make_shared<SweepOptions>();
+  options->ranks = ranks;
   add_experiment(*verb, options->experiment);
   add_method(*verb, options->experiment);
   add_limits(*verb, options->experiment);

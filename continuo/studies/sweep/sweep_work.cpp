@@ -31,7 +31,7 @@ class Hands {
 
   Status status() {
     if (!status_) return status_;
-    if (delivered_ == work_.chunks.size()) return {};
+    if (is_all_taken_ && delivered_ == taken_) return {};
     return {.ending = Ending::interrupted, .message = "the sweep was interrupted", .place = {}};
   }
 
@@ -42,8 +42,13 @@ class Hands {
     std::unique_lock lock(mutex_);
     // Whose turn it is has been begun by another thread, which does not wait here.
     turned_.wait(lock, [&] { return is_stopped() || !work_.in_order || next_ < turn_ + most_waiting; });
-    if (is_stopped() || next_ == work_.chunks.size()) return std::nullopt;
-    return next_++;
+    if (is_stopped()) return std::nullopt;
+    const std::uint64_t place = work_.take ? work_.take() : next_;
+    is_all_taken_ = place >= work_.chunks.size();
+    if (is_all_taken_) return std::nullopt;
+    ++taken_;
+    if (!work_.take) ++next_;
+    return static_cast<std::size_t>(place);
   }
 
   void count() {
@@ -77,7 +82,8 @@ class Hands {
   const SweepWork& work_;
   std::mutex mutex_, watching_;
   std::condition_variable turned_;
-  std::size_t next_ = 0, turn_ = 0, delivered_ = 0;
+  std::size_t next_ = 0, turn_ = 0, taken_ = 0, delivered_ = 0;
+  bool is_all_taken_ = false;
   std::uint64_t runs_ = 0;
   std::map<std::size_t, std::vector<SweepOutcome>> waiting_;
   Status status_;

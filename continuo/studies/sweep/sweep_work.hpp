@@ -31,10 +31,13 @@ struct SweepWork {
   const std::atomic<bool>* interrupt = nullptr;
   /// Gets every chunk, one after the other. After a failure no more are begun.
   std::function<Status(std::uint64_t chunk, std::vector<SweepOutcome> outcomes)> on_chunk{};
+  /// The next place in `chunks` that nobody has taken, or one behind the last, where other processes take from the same
+  /// list; without it all are made here. Not with `in_order`.
+  std::function<std::uint64_t()> take{};
   std::function<void(std::uint64_t runs)> progress{};  // how many runs have ended; one call at a time
 };
 
-/// Makes the chunks. The failure of `on_chunk`; Ending::interrupted where not all were made.
+/// Makes the chunks. The failure of `on_chunk`; Ending::interrupted where not all that were to be taken were made.
 Status run_chunks(const PreparedSweep& sweep, const SweepIdentity& identity, const SweepWork& work);
 
 /// The chunks of part `part` of `parts`, counted from 1: consecutive ones, as equal in number as can be.
