@@ -74,6 +74,9 @@ struct SweepKeep {
   NodeId node{};       // of the other kinds
   SweepTimes times{};  // of Kind::series
   Span span;
+
+  /// How many numbers it is: of a series one for each time.
+  [[nodiscard]] std::size_t width() const { return kind == Kind::series ? times.count : 1; }
 };
 
 /// The block as a whole.

@@ -29,10 +29,10 @@ Sort sort_of(const ast::SweepItem& item) {
 }
 
 /// What the language writes before the words of an option.
-std::string_view prefix(Sort sort) {
+std::string_view words_before(Sort sort) {
   return sort == Sort::axis ? "" : sort == Sort::runs ? "runs " : "keep ";
 }
-std::string_view option(Sort sort) {
+std::string_view option_of(Sort sort) {
   return sort == Sort::axis ? "--vary" : sort == Sort::runs ? "--runs" : "--keep";
 }
 
@@ -67,20 +67,20 @@ model::Diagnostic moved(model::Diagnostic message, std::uint32_t begin, std::uin
 
 /// The words of one option as an item of a sweep; nothing after saying what is wrong.
 std::optional<Line> read_line(Sort sort, const std::string& text) {
-  const model::Source block("sweep", fmt::format("{}{}{}\n}}\n", block_begin, prefix(sort), text));
+  const model::Source block("sweep", fmt::format("{}{}{}\n}}\n", block_begin, words_before(sort), text));
   model::ParseResult parsed = model::parse(block);
-  const auto begin = static_cast<std::uint32_t>(block_begin.size() + prefix(sort).size());
+  const auto begin = static_cast<std::uint32_t>(block_begin.size() + words_before(sort).size());
   std::vector<model::Diagnostic> problems;
   for (model::Diagnostic& problem : parsed.diagnostics)
     problems.push_back(moved(std::move(problem), begin, 0, text.size()));
   if (!problems.empty()) {
-    show(problems, model::Source(std::string(option(sort)), text));
+    show(problems, model::Source(std::string(option_of(sort)), text));
     return std::nullopt;
   }
   const auto& statements = parsed.model.statements;
   const auto* sweep = statements.size() == 1 ? std::get_if<ast::Sweep>(&statements.front().node) : nullptr;
   if (!sweep || sweep->items.size() != 1 || sort_of(sweep->items.front()) != sort) {
-    say(fmt::format("{} \"{}\": one {} is expected, in the words of the language", option(sort), text,
+    say(fmt::format("{} \"{}\": one {} is expected, in the words of the language", option_of(sort), text,
                     sort == Sort::axis   ? "name and its values"
                     : sort == Sort::runs ? "number of runs"
                                          : "list of what is kept"));
@@ -144,7 +144,7 @@ Rewritten rewritten(const model::Source& source, const ast::Model& tree, const S
   made.text += '\n';
   made.text += block_begin;
   for (const Line& line : made.lines) {
-    if (line.is_option) made.text += prefix(line.sort);
+    if (line.is_option) made.text += words_before(line.sort);
     made.begins.push_back(made.text.size());
     made.text += line.text + '\n';
   }
@@ -167,7 +167,7 @@ std::vector<model::Diagnostic> show_moved(const std::vector<model::Diagnostic>& 
     const auto begin = static_cast<std::uint32_t>(made.begins[i]);
     if (line.is_option) {
       const model::Diagnostic message = moved(diagnostic, begin, 0, line.text.size());
-      show({&message, 1}, model::Source(std::string(option(line.sort)), line.text));
+      show({&message, 1}, model::Source(std::string(option_of(line.sort)), line.text));
     } else {
       of_model.push_back(moved(diagnostic, begin, line.place, original.text().size()));
     }
@@ -193,9 +193,10 @@ void add_sweep_words(CLI::App& verb, SweepWords& words, bool with_keep) {
 }
 
 model::Loaded load_with_sweep(const std::string& path, const SweepWords& words) {
-  if (path != standard_input && !model::read_source(path)) return load_model(path);
-  const model::Source original =
-      path == standard_input ? model::Source(name_of_file(path), contents_of(path)) : *model::read_source(path);
+  std::optional<model::Source> read =
+      path == standard_input ? model::Source(name_of_file(path), contents_of(path)) : model::read_source(path);
+  if (!read) return load_model(path);  // which says why
+  const model::Source original = *std::move(read);
   const model::ParseResult parsed = model::parse(original);
   if (has_errors(parsed.diagnostics)) return load_model(original);  // which says what is wrong
   auto lines = read_lines(words);

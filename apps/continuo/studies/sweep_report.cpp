@@ -19,11 +19,7 @@ using results::short_number;
 using studies::OutcomeSummary;
 
 constexpr std::size_t most_failures = 5, most_times = 11;
-constexpr std::array<double, 5> levels = {0.05, 0.25, 0.5, 0.75, 0.95};
-
-std::size_t width_of(const SweepKeep& keep) {
-  return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
-}
+constexpr std::array<double, 5> quantile_parts = {0.05, 0.25, 0.5, 0.75, 0.95};
 
 /// The columns of a table, each as wide as its widest cell.
 std::string aligned(const std::vector<std::vector<std::string>>& lines) {
@@ -43,7 +39,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
 
 std::vector<std::string> line_of(std::string name, const OutcomeSummary& summary) {
   std::vector<std::string> line{std::move(name)};
-  const std::vector<double> quantiles = summary.quantiles(levels);
+  const std::vector<double> quantiles = summary.quantiles(quantile_parts);
   for (const double number : {summary.mean(), summary.deviation(), summary.lowest(), quantiles[0], quantiles[2],
                               quantiles[4], summary.highest()})
     line.push_back(std::isnan(number) ? "-" : short_number(number));
@@ -53,8 +49,9 @@ std::vector<std::string> line_of(std::string name, const OutcomeSummary& summary
 
 Json json_of(const OutcomeSummary& summary) {
   Json quantiles = Json::array();
-  const std::vector<double> values = summary.quantiles(levels);
-  for (std::size_t i = 0; i < levels.size(); ++i) quantiles.push_back({{"p", levels[i]}, {"value", values[i]}});
+  const std::vector<double> values = summary.quantiles(quantile_parts);
+  for (std::size_t i = 0; i < quantile_parts.size(); ++i)
+    quantiles.push_back({{"p", quantile_parts[i]}, {"value", values[i]}});
   return {{"count", summary.count()},
           {"missing", summary.missing()},
           {"mean", summary.mean()},
@@ -97,7 +94,7 @@ std::string SweepReport::text() const {
   std::size_t place = 0;
   for (const SweepKeep& keep : plan.keeps) {
     const std::string unit = keep.unit.empty() ? "" : " [" + keep.unit + "]";
-    const std::size_t width = width_of(keep), shown = std::min(width, most_times);
+    const std::size_t width = keep.width(), shown = std::min(width, most_times);
     for (std::size_t i = 0; i < shown; ++i) {
       const std::size_t k = shown > 1 ? i * (width - 1) / (shown - 1) : 0;
       std::string name = keep.name + unit;
@@ -128,7 +125,7 @@ Json SweepReport::json() const {
   std::size_t place = 0;
   for (const SweepKeep& keep : plan.keeps) {
     Json one{{"name", keep.name}, {"unit", keep.unit}};
-    const std::size_t width = width_of(keep);
+    const std::size_t width = keep.width();
     Json statistics = Json::array();
     for (std::size_t k = 0; k < width; ++k) {
       Json of_time = json_of(summaries_[place + k]);

@@ -26,6 +26,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <continuo/results/file_place.hpp>
 #include <continuo/runs/run.hpp>
 #include <continuo/studies/sweep/sweep_table.hpp>
 #include <continuo/studies/sweep/sweep_work.hpp>
@@ -62,6 +63,13 @@ std::optional<Part> read_part(const std::string& text) {
   return fits ? std::optional(part) : std::nullopt;
 }
 
+/// Whether there is a file beside which chunks can be kept; not a pipe or a device.
+bool has_folder(const SweepOptions& options) {
+  if (options.out.empty()) return false;
+  const results::FilePlace place = results::place_of(options.out);
+  return place.kind == results::FilePlace::Kind::file && !place.descriptor;
+}
+
 /// False after saying why the options do not go together.
 bool fit_together(const SweepOptions& options) {
   const char* needs_file = !options.part.empty() ? "--part"
@@ -69,8 +77,7 @@ bool fit_together(const SweepOptions& options) {
                            : options.resume      ? "--resume"
                            : options.ranks       ? "a sweep by several processes"
                                                  : "";
-  const bool is_file = !options.out.empty() && options.out != "-";
-  if (*needs_file != '\0' && !is_file) {
+  if (*needs_file != '\0' && !has_folder(options)) {
     say(fmt::format("{} needs -o FILE: beside it is the folder of what is done", needs_file));
     return false;
   }
@@ -118,7 +125,7 @@ class Study {
  private:
   /// Makes the sweep, and the table; with the help of the other ranks where there are some.
   ExitCode lead() {
-    if (options_.out.empty() || options_.out == "-") return without_folder();
+    if (!has_folder(options_)) return without_folder();
     const bool is_new = !SweepFolder::exists(folder_of(options_));
     if (options_.merge && is_new) {
       say(fmt::format("there is no folder {}: make the runs first, in one go or by --part", folder_of(options_)));
@@ -233,7 +240,7 @@ class Study {
     if (options_.part.empty()) return merge(folder);
     mention(fmt::format("part {} is in {}; when all parts are there, --merge makes {}", options_.part, folder.path(),
                         options_.out));
-    if (options_.json) answer_json(folder.path());
+    if (options_.json) answer_json(&folder);
     return done;
   }
 
@@ -253,19 +260,18 @@ class Study {
     if (!is_interrupted) say(describe(status));
     say(fmt::format("{} of {} chunks are in {}; the same command with --resume goes on", whole, identity_.chunks(),
                     folder.path()));
-    if (options_.json && is_interrupted) answer_json(folder.path());
+    if (options_.json && is_interrupted) answer_json(&folder);
     return is_interrupted ? interrupted : usage;
   }
 
   /// The table and the statistics of all chunks. The folder goes when the table is on the disk.
   ExitCode merge(const SweepFolder& folder) {
-    std::optional<studies::SweepTable> table(std::in_place, options_.out, sweep_, identity_.hash);
     if (const auto left = folder.missing(); !left.empty()) {
-      table.reset();
       say(fmt::format("{} of {} chunks are missing in {}, the first is that of run {}: make them with --resume",
                       left.size(), identity_.chunks(), folder.path(), identity_.first_run(left.front())));
       return usage;
     }
+    std::optional<studies::SweepTable> table(std::in_place, options_.out, sweep_, identity_.hash);
     for (std::uint64_t chunk = 0; chunk < identity_.chunks(); ++chunk) {
       const auto outcomes = folder.read(chunk);
       const Status status = outcomes ? take(chunk, *outcomes, table) : outcomes.status();
@@ -282,12 +288,17 @@ class Study {
     return tell({});
   }
 
-  void answer_json(const std::string& folder = {}) const {
+  /// `folder`: of runs that are made, but not yet in a table with its statistics.
+  void answer_json(const SweepFolder* folder = nullptr) const {
     nlohmann::ordered_json fields = report_.json();
     fields["table"] = nullptr;
     fields["folder"] = nullptr;
-    if (!folder.empty()) {
-      fields["folder"] = folder;
+    if (folder) {
+      const std::vector<std::uint64_t> left = folder->missing();
+      fields["done"] =
+          std::accumulate(left.begin(), left.end(), identity_.runs,
+                          [&](std::uint64_t rest, std::uint64_t chunk) { return rest - identity_.size(chunk); });
+      fields["folder"] = folder->path();
     } else if (!options_.out.empty()) {
       fields["table"] = options_.out;
     }
@@ -336,6 +347,9 @@ ExitCode sweep(SweepOptions options) {
   if (!made) {
     say(describe(made.status()));
     return wrong_model;
+  }
+  if (const auto* design = made->design()) {
+    if (const std::string advice = design->advice(model.sweep->runs); !advice.empty()) mention(advice);
   }
   return Study(options, *made).go();
 }

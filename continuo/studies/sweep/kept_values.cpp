@@ -12,7 +12,7 @@ namespace {
 using model::SweepKeep;
 
 constexpr std::size_t parts_of_a_piece = 8;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 constexpr double exactness = 1.5e-8;  // of the place of an extreme, whose value is then exact to rounding
 
 /// Sign with which an extreme becomes a maximum.
@@ -53,8 +53,7 @@ KeptNodes::KeptNodes(std::shared_ptr<const model::ModelProgram> program, std::sp
 }
 
 KeptValues::KeptValues(const KeptNodes& kept) : kept_(kept) {
-  for (const SweepKeep& keep : kept_.keeps_)
-    values_.emplace_back(keep.kind == SweepKeep::Kind::series ? keep.times.count : 1, no_number);
+  for (const SweepKeep& keep : kept_.keeps_) values_.emplace_back(keep.width(), not_there);
   integrals_.resize(values_.size());
   sizes_.resize(values_.size());
   next_.resize(values_.size());

@@ -21,11 +21,7 @@ using model::SweepAxis;
 using model::SweepKeep;
 using model::SweepPoints;
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t width_of(const SweepKeep& keep) {
-  return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
-}
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// The first error, with its code.
 std::string first_error(const std::vector<model::Diagnostic>& diagnostics) {
@@ -72,8 +68,8 @@ Status PreparedSweep::add_dimensions() {
   for (std::size_t a = 0; a < plan_->axes.size(); ++a) {
     const SweepAxis& axis = plan_->axes[a];
     if (axis.kind == SweepAxis::Kind::parameter) {
-      const std::size_t i = find_parameter(program_->model, axis.name);
-      decides_size_ = decides_size_ || program_->model.parameters[i].structural;
+      const std::size_t i = find_parameter(model(), axis.name);
+      decides_size_ = decides_size_ || model().parameters[i].structural;
     }
     Dimension dimension{.axes = {a}};
     if (const auto* points = std::get_if<SweepPoints>(&axis.values)) {
@@ -106,9 +102,8 @@ Result<PreparedSweep> PreparedSweep::create(model::Model model, model::Experimen
   if (!model.sweep) return invalid_input("the model has no sweep: write sweep { k from 1 to 10 count 50 }");
   PreparedSweep made;
   made.plan_ = model.sweep;
-  for (const SweepKeep& keep : made.plan_->keeps) made.width_ += width_of(keep);
-  made.readable_ = readable(model);
-  made.program_ = model::compile(std::move(model));
+  for (const SweepKeep& keep : made.plan_->keeps) made.width_ += keep.width();
+  made.readable_ = readable(std::move(model));
   made.experiment_ = std::move(experiment);
   made.experiment_.keep_rows = false;
   made.experiment_.progress = nullptr;
@@ -159,13 +154,13 @@ std::optional<PreparedSweep::Readable> PreparedSweep::read_anew(const model::Exp
                                                                 SweepOutcome& outcome) const {
   static std::mutex reading;
   const std::scoped_lock lock(reading);
-  const model::Text& text = program_->model.text;
+  const model::Text& text = model().text;
   model::CheckOptions options;
   for (const auto& [name, value] : experiment.parameters)
-    if (find_parameter(program_->model, name) != model::npos) options.overrides.emplace(name, value);
+    if (find_parameter(model(), name) != model::npos) options.overrides.emplace(name, value);
   model::Loaded loaded = model::load(model::Source(text.path, text.content), options);
   if (loaded.model && loaded.model->sweep) {
-    loaded.model->native = program_->model.native;
+    loaded.model->native = model().native;
     return readable(*std::move(loaded.model));
   }
   outcome.message = first_error(loaded.diagnostics);
@@ -180,19 +175,19 @@ std::vector<double> PreparedSweep::kept_of(const Readable& readable, const model
   for (const SweepKeep& keep : readable.program->model.sweep->keeps) {
     if (keep.kind == SweepKeep::Kind::reading) {
       const model::CheckResult& result = run.checks[reading++];
-      kept.push_back(result.evaluated ? result.value : no_number);
+      kept.push_back(result.evaluated ? result.value : no_value);
     } else {
       const auto values = watched.of(seen++);
       kept.insert(kept.end(), values.begin(), values.end());
     }
   }
-  kept.resize(width_, no_number);
+  kept.resize(width_, no_value);
   return kept;
 }
 
 SweepOutcome PreparedSweep::run(std::uint64_t number) const {
-  SweepOutcome outcome{.ending = Ending::invalid_input, .t = no_number, .kept = {}, .message = {}};
-  outcome.kept.assign(width_, no_number);
+  SweepOutcome outcome{.ending = Ending::invalid_input, .t = no_value, .kept = {}, .message = {}};
+  outcome.kept.assign(width_, no_value);
   const model::Experiment asked = experiment(number);
   const auto anew = decides_size_ ? read_anew(asked, outcome) : std::nullopt;
   if (decides_size_ && !anew) return outcome;
@@ -222,8 +217,8 @@ SweepOutcome PreparedSweep::run(std::uint64_t number) const {
 }
 
 std::string PreparedSweep::identity() const {
-  std::string text = program_->model.text.content;
-  text += '\n' + std::to_string(model::checksum_of_tables(*program_)) + '\n' + text_of(experiment_);
+  std::string text = model().text.content;
+  text += '\n' + std::to_string(model::checksum_of_tables(*readable_.program)) + '\n' + text_of(experiment_);
   text += fmt::format("{} {} {}\n", plan_->runs, to_string(plan_->sampling), plan_->seed);
   for (const SweepAxis& axis : plan_->axes) {
     text += axis.column() + ':';

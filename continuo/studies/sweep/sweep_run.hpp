@@ -42,8 +42,8 @@ class PreparedSweep {
   [[nodiscard]] const SweepDesign* design() const { return design_ ? &*design_ : nullptr; }
   /// What is varied together with one coordinate of the design: "k", or "m, c" of one file.
   [[nodiscard]] std::vector<std::string> dimension_names() const;
-  /// The model of all runs.
-  [[nodiscard]] const model::Model& model() const { return program_->model; }
+  /// The model of all runs, whose checks are what is read of them.
+  [[nodiscard]] const model::Model& model() const { return readable_.program->model; }
   /// How many runs there are.
   [[nodiscard]] std::uint64_t runs() const { return plan_->runs; }
   /// How many numbers are kept of each: one, or of a series one for each time.
@@ -82,7 +82,6 @@ class PreparedSweep {
                                             const KeptValues& watched) const;
 
   std::shared_ptr<const model::SweepPlan> plan_;
-  std::shared_ptr<const model::ModelProgram> program_;  // of the model as it is
   Readable readable_;
   model::Experiment experiment_;
   std::vector<Dimension> dimensions_;

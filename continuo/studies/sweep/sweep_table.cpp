@@ -22,10 +22,6 @@ using results::NetcdfVariable;
 /// The columns of a run beside those that were asked for: its number, how it ended, and when.
 constexpr std::size_t columns_before_axes = 1, columns_behind_axes = 2;
 
-std::size_t width_of(const SweepKeep& keep) {
-  return keep.kind == SweepKeep::Kind::series ? keep.times.count : 1;
-}
-
 /// A slash separates groups in names of netCDF.
 std::string variable_name(std::string name) {
   std::ranges::replace(name, '/', '_');
@@ -88,7 +84,7 @@ class SweepLayout {
     for (const SweepKeep& keep : plan.keeps) {
       std::vector<std::size_t> dimensions{run_};
       if (keep.kind == SweepKeep::Kind::series) dimensions.push_back(dimension_of(keep.times));
-      add(keep.name, {{"units", keep.unit}, {"coordinates", coordinates_}}, std::move(dimensions), width_of(keep));
+      add(keep.name, {{"units", keep.unit}, {"coordinates", coordinates_}}, std::move(dimensions), keep.width());
     }
     return std::move(file_);
   }
