@@ -11,7 +11,6 @@ namespace continuo::studies {
 namespace {
 
 namespace policies = boost::math::policies;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Of the normal distribution with mean 0 and deviation 1.
 long double standard_quantile(double u) {
@@ -154,7 +153,7 @@ Status check(const Distribution& distribution) {
 }
 
 double quantile(const Distribution& distribution, double u) {
-  if (!(u >= 0 && u <= 1)) return no_number;
+  if (!(u >= 0 && u <= 1)) return std::numeric_limits<double>::quiet_NaN();
   return std::visit([u](const auto& d) { return static_cast<double>(value_at(d, u)); }, distribution);
 }
 

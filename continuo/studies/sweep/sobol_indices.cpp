@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t samples = 16;  // independent of each other; their spread tells the error
 constexpr double confidence = 0.95;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr Estimate no_estimate{NAN, NAN, NAN};
 
 /// Rows whose outcomes are all finite.
 struct Rows {
@@ -42,7 +42,7 @@ Estimate ratio(const Rows& rows, std::uint64_t replicates, std::span<const doubl
                std::span<const double> denominators) {
   double top = 0, bottom = 0;
   for (std::size_t i = 0; i < numerators.size(); ++i) top += numerators[i], bottom += denominators[i];
-  if (!(bottom > 0)) return {no_number, no_number, no_number};
+  if (!(bottom > 0)) return no_estimate;
   const double value = top / bottom;
   std::vector<double> deviations(static_cast<std::size_t>(replicates));
   std::vector<bool> has_rows(deviations.size());
@@ -54,7 +54,7 @@ Estimate ratio(const Rows& rows, std::uint64_t replicates, std::span<const doubl
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < deviations.size(); ++k)
     if (has_rows[k]) squares += deviations[k] * deviations[k], count += 1;
-  if (count < 2) return {value, no_number, no_number};
+  if (count < 2) return {value, NAN, NAN};
   const double error = std::sqrt(squares * count / (count - 1)) / bottom;
   const double reach = student_t_quantile(confidence, count - 1) * error;
   return {value, value - reach, value + reach};
