@@ -150,6 +150,9 @@ def studies():
     answer(["sense", "rest.sim", "--param", "a", "--of", "equilibrium"], 0, layout="continuo.sense_equilibrium/1")
     answer(["sweep", "models/mass_spring_damper.sim", "--vary", "k from 1 to 4 count 3", "--keep",
             "max(x), x at 0..1 by 0.5"], 0, layout="continuo.sweep/2")
+    for runs in ("48 indices", "6 morris"):
+        answer(["sweep", "models/mass_spring_damper.sim", "--vary", "k uniform(1, 4)", "--keep", "max(x)", "--runs", runs],
+               0, layout="continuo.sweep/2")
     call(["run", "models/mass_spring_damper.sim", "-o", "measured.csv"])
     answer(["fit", "models/mass_spring_damper.sim", "few.csv", "--param", "k,c", "--profile"], layout="continuo.fit/1")
 

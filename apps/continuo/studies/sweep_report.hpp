@@ -22,6 +22,8 @@ class SweepReport {
 
   std::uint64_t runs() const { return runs_; }
   std::uint64_t failed() const { return failed_; }
+  /// Of one of the numbers that are kept.
+  const studies::OutcomeSummary& summary(std::size_t place) const { return summaries_[place]; }
 
   /// A table of the statistics. Of a series the first, some times between, and the last are shown.
   std::string text() const;

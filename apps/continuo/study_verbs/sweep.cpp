@@ -15,6 +15,8 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/studies/sweep_indices.hpp>
+#include <apps/continuo/studies/sweep_pictures.hpp>
 #include <apps/continuo/studies/sweep_ranks.hpp>
 #include <apps/continuo/studies/sweep_report.hpp>
 #include <apps/continuo/terminal/answer.hpp>
@@ -48,8 +50,9 @@ struct SweepOptions {
   ExperimentOptions experiment;
   std::string out;
   std::string part;
+  std::string plot;
   std::size_t threads = 0;  // 0: as many as there are cores
-  bool resume = false, merge = false, json = false;
+  bool resume = false, merge = false, json = false, dark = false;
   SweepRanks* ranks = nullptr;  // those that make it together with this process
 };
 
@@ -111,7 +114,12 @@ std::vector<std::uint64_t> all_chunks(const SweepIdentity& identity) {
 class Study {
  public:
   Study(const SweepOptions& options, const PreparedSweep& sweep)
-      : options_(options), sweep_(sweep), identity_(identity_of(sweep, version_of_program())), report_(sweep) {}
+      : options_(options),
+        sweep_(sweep),
+        identity_(identity_of(sweep, version_of_program())),
+        report_(sweep),
+        indices_(sweep),
+        pictures_(sweep) {}
 
   ExitCode go() {
     if (options_.ranks && !options_.ranks->agree(identity_.hash)) {
@@ -179,6 +187,8 @@ class Study {
     const std::uint64_t first = identity_.first_run(chunk);
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       report_.add(first + i, outcomes[i]);
+      indices_.add(outcomes[i]);
+      pictures_.add(first + i, outcomes[i]);
       if (table) table->add(first + i, outcomes[i]);
     }
     return table ? table->status() : Status();
@@ -291,6 +301,7 @@ class Study {
   /// `folder`: of runs that are made, but not yet in a table with its statistics.
   void answer_json(const SweepFolder* folder = nullptr) const {
     nlohmann::ordered_json fields = report_.json();
+    fields["indices"] = indices_.json();
     fields["table"] = nullptr;
     fields["folder"] = nullptr;
     if (folder) {
@@ -309,7 +320,8 @@ class Study {
     if (options_.json) {
       answer_json();
     } else if (options_.out != "-") {
-      print(fmt::format("{} runs, {}\n\n{}", report_.runs(), to_string(sweep_.plan().sampling), report_.text()));
+      print(fmt::format("{} runs, {}\n\n{}{}", report_.runs(), to_string(sweep_.plan().sampling), report_.text(),
+                        indices_.text()));
     }
     if (const std::string failures = report_.failures_text(); !failures.empty()) say(failures);
     if (status.ending == Ending::interrupted) {
@@ -317,19 +329,31 @@ class Study {
                       sweep_.runs()));
       return interrupted;
     }
-    if (!written(status)) return usage;
+    if (!written(status) || !draw()) return usage;
     return report_.failed() > 0 ? numerical_failure : done;
+  }
+
+  /// False after saying why the picture could not be drawn.
+  bool draw() const {
+    if (options_.plot.empty()) return true;
+    std::vector<results::Panel> panels = indices_.panels();
+    if (panels.empty()) panels = pictures_.panels(report_);
+    const auto title = fmt::format("{}, {} runs", sweep_.model().name, report_.runs());
+    return written(
+        results::draw({.title = title, .panels = std::move(panels), .is_dark = options_.dark}, options_.plot));
   }
 
   const SweepOptions& options_;
   const PreparedSweep& sweep_;
   SweepIdentity identity_;
   SweepReport report_;
+  SweepIndices indices_;
+  SweepPictures pictures_;
 };
 
 ExitCode sweep(SweepOptions options) {
   options.experiment.sweep.is_wanted = true;
-  if (!fit_together(options)) return usage;
+  if (!fit_together(options) || !drawable(options.plot)) return usage;
   const Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
@@ -360,6 +384,7 @@ void add_sweep(CLI::App& app, ExitCode& exit, SweepRanks* ranks) {
   static constexpr std::string_view examples =
       "  continuo sweep spring.sim -o spring.nc                      as the model's sweep says; opens in xarray\n"
       "  continuo sweep spring.sim --vary \"k from 1 to 10 [N/m] count 50\" --keep \"max(abs(x)) as peak\"\n"
+      "  continuo sweep spring.sim --runs \"10000 indices\" --plot bars.svg     what causes the spread\n"
       "  continuo sweep spring.sim --vary \"c normal(0.5, 0.1)\" --runs \"10000 sobol seed 7\" --json\n"
       "  continuo sweep spring.sim -o spring.nc --resume             goes on with one that was interrupted\n"
       "  continuo sweep spring.sim -o spring.nc --part 3/16          one of sixteen jobs; at last\n"
@@ -379,6 +404,10 @@ void add_sweep(CLI::App& app, ExitCode& exit, SweepRanks* ranks) {
                verb->add_option("-o,--out", options->out,
                                 "Writes a row for each run, as .csv, .tsv, .json, .nc (netCDF) or .mat (MATLAB); "
                                 "- for standard output"));
+  writes_file(*verb, verb->add_option("--plot", options->plot,
+                                      "Writes a picture, .svg or .png: quantiles over time, a plane of two "
+                                      "parameters, outcomes over parameters, or bars of indices"));
+  verb->add_flag("--dark", options->dark, "Draws it on a dark background");
   verb->add_flag("--resume", options->resume, "Goes on with a sweep that was interrupted: makes what is missing");
   verb->add_option("--part", options->part, "Makes one part of the runs, for jobs on several machines: 3/16")
       ->type_name("K/N");
