@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <random>
 #include <string_view>
 #include <system_error>
 
@@ -85,6 +87,22 @@ Status unreadable(const std::string& path, std::string why) {
   return {.ending = Ending::unreadable, .message = std::move(why), .place = path};
 }
 
+/// Writes the file under another name and renames it. It need not be on the disk then: what a computer that stops
+/// leaves of it is seen by its hash, and made again.
+Status write_beside(const std::string& path, const std::string& bytes) {
+  const std::string beside = fmt::format("{}.{:08x}.part", path, std::random_device()());
+  const auto fail = [&] {
+    const std::string reason = std::strerror(errno);
+    std::remove(beside.c_str());
+    return Status{.ending = Ending::unwritable, .message = fmt::format("cannot write {}: {}", path, reason)};
+  };
+  std::FILE* const file = std::fopen(beside.c_str(), "wbx");
+  if (file == nullptr) return fail();
+  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool is_closed = std::fclose(file) == 0;
+  return is_written && is_closed && std::rename(beside.c_str(), path.c_str()) == 0 ? Status() : fail();
+}
+
 /// The content without its hash; nothing where that is another one.
 std::optional<std::string_view> proved(std::string_view content) {
   if (content.size() < hash_digits) return std::nullopt;
@@ -152,7 +170,7 @@ Status SweepFolder::write(std::uint64_t chunk, const std::vector<SweepOutcome>& 
     bytes += message;
   }
   bytes += results::sha256(bytes);
-  return results::write_file(file(chunk), bytes);
+  return write_beside(file(chunk), bytes);
 }
 
 Result<std::vector<SweepOutcome>> SweepFolder::read(std::uint64_t chunk) const {
