@@ -28,7 +28,7 @@ constexpr const char* swinging =
     "sweep {\n"
     "  k uniform(1, 9) [N/m]\n"
     "  c normal(0.5, 0.1) [N*s/m]\n"
-    "  runs 3000 sobol seed 7\n"
+    "  runs 300 sobol seed 7\n"
     "  keep x at end, max(abs(x)) as peak, time of event 1 as down, x at 0..5 by 1\n"
     "}\n";
 
@@ -37,7 +37,7 @@ TEST(SweepStudy, HasTheSameBytesHoweverItIsMade) {
   shell.write("swing.sim", swinging);
   ASSERT_EQ(shell.run("sweep swing.sim -o one.csv --threads 1").exit, 0);
   const std::string whole = shell.read("one.csv");
-  EXPECT_EQ(lines_of(whole).size(), 3002U);
+  EXPECT_EQ(lines_of(whole).size(), 302U);
   EXPECT_EQ(lines_of(whole)[1],
             "run,k,c,outcome,ended,x at end,peak,down,x at 0..5 by 1 t=0,x at 0..5 by 1 t=1,x at 0..5 by 1 t=2,x at "
             "0..5 by 1 t=3,x at 0..5 by 1 t=4,x at 0..5 by 1 t=5");
@@ -95,17 +95,17 @@ TEST(SweepStudy, ARunOfItIsRepeatedAlone) {
   const Shell shell;
   shell.write("swing.sim", swinging);
   ASSERT_EQ(shell.run("sweep swing.sim -o all.csv").exit, 0);
-  const std::string row = lines_of(shell.read("all.csv"))[2 + 1234];
-  const Result one = shell.run("run swing.sim --sweep-run 1234 -o one.csv");
+  const std::string row = lines_of(shell.read("all.csv"))[2 + 123];
+  const Result one = shell.run("run swing.sim --sweep-run 123 -o one.csv");
   ASSERT_EQ(one.exit, 0) << one.err;
-  EXPECT_THAT(one.err, HasSubstr("run 1234 of the sweep: k = "));
+  EXPECT_THAT(one.err, HasSubstr("run 123 of the sweep: k = "));
   std::vector<std::string> cells, last;
   std::istringstream in(row), of_last(lines_of(shell.read("one.csv")).back());
   for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
   for (std::string cell; std::getline(of_last, cell, ',');) last.push_back(cell);
-  EXPECT_EQ(cells[0], "1234");
+  EXPECT_EQ(cells[0], "123");
   EXPECT_EQ(cells[5], last[1]);  // x at the end, to the last digit
-  EXPECT_EQ(shell.run("run swing.sim --sweep-run 3000").exit, 1);
+  EXPECT_EQ(shell.run("run swing.sim --sweep-run 300").exit, 1);
   EXPECT_EQ(shell.run("run swing.sim --sweep-run 3 --set k=1,2").exit, 1);
 }
 
@@ -168,7 +168,7 @@ TEST(SweepStudy, AModelThatFailsInAPartOfTheSpaceIsNoLostStudy) {
 
 TEST(SweepStudy, AFullDiskLosesNothing) {
   const Shell shell;
-  if (shell.call("mkdir small && mount -t tmpfs -o size=200k none small").exit != 0) GTEST_SKIP() << "no mount here";
+  if (shell.call("mkdir small && mount -t tmpfs -o size=24k none small").exit != 0) GTEST_SKIP() << "no mount here";
   shell.write("swing.sim", swinging);
   const Result full = shell.run("sweep swing.sim -o small/k.csv");
   EXPECT_EQ(full.exit, 1) << full.err;
