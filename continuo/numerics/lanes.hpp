@@ -11,7 +11,8 @@
 // A function templated over its scalar runs W systems at once with it. Where the machine has registers of W numbers one
 // is used, otherwise several smaller ones, otherwise (long double, odd W) plain numbers. Sums, products, quotients and
 // square roots are rounded as for one number, so each lane gives the bits that one number would; the elementary
-// functions are xsimd's, within a few units in the last place of those of <cmath>.
+// functions of doubles are those of libmvec (registers/vector_functions.hpp), within a few units in the last place of
+// those of <cmath>, or where there is none those of <cmath>. No lane depends on its neighbours, nor on W.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,12 +20,14 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
 #include <continuo/numerics/lane_mask.hpp>
+#include <continuo/numerics/registers/vector_functions.hpp>
 
 namespace continuo {
 
@@ -121,25 +124,23 @@ class Lanes {
   friend Lanes sqrt(const Lanes& a) { return map([](const Part& x) { using std::sqrt; return Part(sqrt(x)); }, a); }
   friend Lanes floor(const Lanes& a) { return map([](const Part& x) { using std::floor; return Part(floor(x)); }, a); }
   friend Lanes ceil(const Lanes& a) { return map([](const Part& x) { using std::ceil; return Part(ceil(x)); }, a); }
-  friend Lanes sin(const Lanes& a) { return map([](const Part& x) { using std::sin; return Part(sin(x)); }, a); }
-  friend Lanes cos(const Lanes& a) { return map([](const Part& x) { using std::cos; return Part(cos(x)); }, a); }
-  friend Lanes tan(const Lanes& a) { return map([](const Part& x) { using std::tan; return Part(tan(x)); }, a); }
-  friend Lanes asin(const Lanes& a) { return map([](const Part& x) { using std::asin; return Part(asin(x)); }, a); }
-  friend Lanes acos(const Lanes& a) { return map([](const Part& x) { using std::acos; return Part(acos(x)); }, a); }
-  friend Lanes atan(const Lanes& a) { return map([](const Part& x) { using std::atan; return Part(atan(x)); }, a); }
-  friend Lanes tanh(const Lanes& a) { return map([](const Part& x) { using std::tanh; return Part(tanh(x)); }, a); }
-  friend Lanes log(const Lanes& a) { return map([](const Part& x) { using std::log; return Part(log(x)); }, a); }
-  friend Lanes log10(const Lanes& a) { return map([](const Part& x) { using std::log10; return Part(log10(x)); }, a); }
-  friend Lanes cbrt(const Lanes& a) { return map([](const Part& x) { using std::cbrt; return Part(cbrt(x)); }, a); }
+  friend Lanes sin(const Lanes& a) { return function<detail::vector_sin>([](const auto& x) { using std::sin; return sin(x); }, a); }
+  friend Lanes cos(const Lanes& a) { return function<detail::vector_cos>([](const auto& x) { using std::cos; return cos(x); }, a); }
+  friend Lanes tan(const Lanes& a) { return function<detail::vector_tan>([](const auto& x) { using std::tan; return tan(x); }, a); }
+  friend Lanes asin(const Lanes& a) { return function<detail::vector_asin>([](const auto& x) { using std::asin; return asin(x); }, a); }
+  friend Lanes acos(const Lanes& a) { return function<detail::vector_acos>([](const auto& x) { using std::acos; return acos(x); }, a); }
+  friend Lanes atan(const Lanes& a) { return function<detail::vector_atan>([](const auto& x) { using std::atan; return atan(x); }, a); }
+  friend Lanes tanh(const Lanes& a) { return function<detail::vector_tanh>([](const auto& x) { using std::tanh; return tanh(x); }, a); }
+  friend Lanes log(const Lanes& a) { return function<detail::vector_log>([](const auto& x) { using std::log; return log(x); }, a); }
+  friend Lanes log10(const Lanes& a) { return function<detail::vector_log10>([](const auto& x) { using std::log10; return log10(x); }, a); }
+  friend Lanes cbrt(const Lanes& a) { return function<detail::vector_cbrt>([](const auto& x) { using std::cbrt; return cbrt(x); }, a); }
   friend Lanes fabs(const Lanes& a) { return abs(a); }
-  // xsimd's overflow and underflow a little early: numbers near the ends of the range go one by one.
-  friend Lanes exp(const Lanes& a) { return near(a, exponent_limit) ? map([](const Part& x) { using std::exp; return Part(exp(x)); }, a) : each([](Real x) { return std::exp(x); }, a); }
-  friend Lanes sinh(const Lanes& a) { return near(a, exponent_limit) ? map([](const Part& x) { using std::sinh; return Part(sinh(x)); }, a) : each([](Real x) { return std::sinh(x); }, a); }
-  friend Lanes cosh(const Lanes& a) { return near(a, exponent_limit) ? map([](const Part& x) { using std::cosh; return Part(cosh(x)); }, a) : each([](Real x) { return std::cosh(x); }, a); }
-  // xsimd's lose digits (pow: hundreds of units) or special cases (0^0, atan2(0, 0), large hypot): one by one.
-  friend Lanes pow(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::pow(x, y); }, a, b); }
-  friend Lanes atan2(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::atan2(x, y); }, a, b); }
-  friend Lanes hypot(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::hypot(x, y); }, a, b); }
+  friend Lanes exp(const Lanes& a) { return function<detail::vector_exp>([](const auto& x) { using std::exp; return exp(x); }, a); }
+  friend Lanes sinh(const Lanes& a) { return function<detail::vector_sinh>([](const auto& x) { using std::sinh; return sinh(x); }, a); }
+  friend Lanes cosh(const Lanes& a) { return function<detail::vector_cosh>([](const auto& x) { using std::cosh; return cosh(x); }, a); }
+  friend Lanes pow(const Lanes& a, const Lanes& b) { return function<detail::vector_pow>([](Real x, Real y) { return std::pow(x, y); }, a, b); }
+  friend Lanes atan2(const Lanes& a, const Lanes& b) { return function<detail::vector_atan2>([](Real x, Real y) { return std::atan2(x, y); }, a, b); }
+  friend Lanes hypot(const Lanes& a, const Lanes& b) { return function<detail::vector_hypot>([](Real x, Real y) { return std::hypot(x, y); }, a, b); }
   /// @}
   // clang-format on
 
@@ -150,9 +151,32 @@ class Lanes {
   using Parts = std::array<Part, parts>;
   Parts part_;
 
-  /// exp is comfortably finite and normal up to here.
-  static constexpr Real exponent_limit = Real(0.95) * std::numeric_limits<Real>::max_exponent * Real(0.693);
-  [[nodiscard]] static bool near(const Lanes& a, Real limit) { return all(abs(a) < Lanes(limit)); }
+  // Functions of doubles go through one kind of register, whatever W is, so that a number has the same function in
+  // every lane of every width. xsimd's would choose their way by all the numbers of a register.
+  template <auto OfRegister, class F, class... A>
+  [[nodiscard]] static Lanes function(F one, const A&... a) {
+    if constexpr (std::same_as<Real, double> && detail::has_vector_functions) {
+      constexpr std::size_t at_once = detail::vector_width;
+      std::array<Real, W> result;
+      for (std::size_t first = 0; first < W; first += at_once) {
+        const std::size_t count = std::min(at_once, W - first);
+        const auto part = OfRegister(numbers(a.values(), first, count)...);
+        std::memcpy(result.data() + first, &part, count * sizeof(Real));
+      }
+      return Lanes(result);
+    } else {
+      return each(one, a...);
+    }
+  }
+  // The numbers from `first` on in a register, the last one again where there are too few.
+  [[nodiscard]] static detail::NumbersOfRegister numbers(const std::array<Real, W>& all, std::size_t first,
+                                                         std::size_t count) {
+    detail::NumbersOfRegister result;
+    std::array<Real, detail::vector_width> padded;
+    for (std::size_t i = 0; i < padded.size(); ++i) padded[i] = all[first + std::min(i, count - 1)];
+    std::memcpy(&result, &padded, sizeof result);
+    return result;
+  }
 
   template <class F, class... A>
   [[nodiscard]] static Lanes each(F f, const A&... a) {

@@ -93,8 +93,8 @@ void expect_close(const char* name, double low, double high, F f) {
     const auto x = random_lanes<Lanes<double, 4>>(generator, low, high);
     const auto y = f(x);
     for (std::size_t i = 0; i < 4; ++i) {
-      // xsimd's stated accuracy, with a unit for the rounding of <cmath> itself.
-      ASSERT_LE(ulps(y[i], f(x[i])), 4) << name << "(" << x[i] << ")";
+      // The stated accuracy of libmvec, with a unit for the rounding of <cmath> itself.
+      ASSERT_LE(ulps(y[i], f(x[i])), 5) << name << "(" << x[i] << ")";
     }
   }
 }
@@ -121,14 +121,55 @@ TEST(Lanes, ElementaryFunctionsAgreeWithOneNumberAtATime) {
   // clang-format on
 }
 
+// The bits of f(a, b) alone, in the last lane of W whose others hold neighbours of all kinds.
+template <std::size_t W, class F>
+void expect_independent(const char* name, F f) {
+  std::mt19937_64 generator(11);
+  constexpr double special[] = {0.0, -1.0, 1e300, 1e-320, -1e5, 0.5, HUGE_VAL, NAN};
+  for (int round = 0; round < 2000; ++round) {
+    auto x = random_lanes<Lanes<double, W>>(generator, -3, 3), y = random_lanes<Lanes<double, W>>(generator, -3, 3);
+    const double alone = f(Lanes<double, 1>(x[W - 1]), Lanes<double, 1>(y[W - 1]))[0];
+    for (std::size_t i = 0; i + 1 < W; ++i)
+      if (generator() % 2 == 0) x.set(i, special[generator() % 8]), y.set(i, special[generator() % 8]);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(f(x, y)[W - 1]), std::bit_cast<std::uint64_t>(alone))
+        << name << "(" << x[W - 1] << ", " << y[W - 1] << ")";
+  }
+}
+
+TEST(Lanes, NoLaneDependsOnItsNeighboursOrOnTheWidth) {
+  const auto for_each_width = [](const char* name, auto f) {
+    expect_independent<2>(name, f);
+    expect_independent<3>(name, f);
+    expect_independent<8>(name, f);
+  };
+  // clang-format off
+  for_each_width("sin", [](auto x, auto) { return sin(x); });
+  for_each_width("cos", [](auto x, auto) { return cos(x); });
+  for_each_width("tan", [](auto x, auto) { return tan(x); });
+  for_each_width("asin", [](auto x, auto) { return asin(x); });
+  for_each_width("acos", [](auto x, auto) { return acos(x); });
+  for_each_width("atan", [](auto x, auto) { return atan(x); });
+  for_each_width("sinh", [](auto x, auto) { return sinh(x); });
+  for_each_width("cosh", [](auto x, auto) { return cosh(x); });
+  for_each_width("tanh", [](auto x, auto) { return tanh(x); });
+  for_each_width("exp", [](auto x, auto) { return exp(x); });
+  for_each_width("log", [](auto x, auto) { return log(abs(x)); });
+  for_each_width("log10", [](auto x, auto) { return log10(abs(x)); });
+  for_each_width("cbrt", [](auto x, auto) { return cbrt(x); });
+  for_each_width("pow", [](auto x, auto y) { return pow(abs(x), y); });
+  for_each_width("atan2", [](auto x, auto y) { return atan2(x, y); });
+  for_each_width("hypot", [](auto x, auto y) { return hypot(x, y); });
+  // clang-format on
+}
+
 TEST(Lanes, SpecialCasesAreThoseOfTheStandard) {
   const Lanes<double, 4> x(std::array{0.0, -1.0, 1e300, -0.0});
   const auto zeroth = pow(x, 0), inverse = pow(x, -1), root = sqrt(x), angle = atan2(x, x), length = hypot(x, x);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(zeroth[i], 1);
-    EXPECT_EQ(ulps(inverse[i], std::pow(x[i], -1)), 0);
+    EXPECT_LE(ulps(inverse[i], std::pow(x[i], -1)), 4);
     EXPECT_EQ(std::bit_cast<std::uint64_t>(angle[i]), std::bit_cast<std::uint64_t>(std::atan2(x[i], x[i])));
-    EXPECT_EQ(length[i], std::hypot(x[i], x[i]));
+    EXPECT_LE(ulps(length[i], std::hypot(x[i], x[i])), 4);
     EXPECT_EQ(std::isnan(root[i]), x[i] < 0);
   }
 }
