@@ -1,0 +1,382 @@
+// Advances W runs of an ensemble together, one per lane: each has its own t and h, and accepts or rejects its own
+// steps. A lane whose run ends takes the next one from the list. What a run does is the same as in StepControl,
+// operation by operation; nothing that a lane computes depends on its neighbours.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <continuo/ensembles/lanes/lane_sizes.hpp>
+#include <continuo/ensembles/lanes/run_of_lane.hpp>
+#include <continuo/ensembles/lanes/run_queue.hpp>
+#include <continuo/numerics/bernstein.hpp>
+#include <continuo/numerics/finite.hpp>
+#include <continuo/numerics/lanes.hpp>
+#include <continuo/system/rebound_state.hpp>
+
+namespace continuo::detail {
+
+template <class F, class Starts, class M, std::size_t W, class... E>
+class LaneDriver {
+ public:
+  using X = StateOf<Starts>;
+  using P = ParametersOf<Starts>;
+  using Queue = RunQueue<X, P>;
+  using Settings = RunSettings<X, P, E...>;
+
+  /// For the runs of a queue that is not empty.
+  LaneDriver(const F& f, const Starts& starts, const Settings& settings, Queue& queue)
+      : f_(f),
+        starts_(starts),
+        settings_(settings),
+        queue_(queue),
+        system_{&f_, widened<WideP>(as_run_start(starts[0]).p)},
+        x_(widened<WideX>(as_run_start(starts[0]).x)),
+        x_new_(x_),
+        slope_(x_),
+        work_(M::workspace(x_)),
+        polynomial_(x_),
+        sizes_(settings.options, settings.forward()),
+        tolerance_(settings.options),
+        has_rows_(!settings.options.save.times.empty()) {
+    runs_.reserve(W);
+    for (std::size_t lane = 0; lane < W; ++lane) runs_.emplace_back(f_, settings_, as_run_start(starts[0]));
+  }
+  LaneDriver(const LaneDriver&) = delete;
+  LaneDriver& operator=(const LaneDriver&) = delete;
+
+  /// Works until the queue is empty.
+  void run() {
+    while (true) {
+      refill();
+      if (active_ == 0) {
+        if (!pending_) return;
+        queue_.wait_for_room(*pending_);
+        if (queue_.stopped()) return;
+        continue;
+      }
+      do {
+        take_step();
+      } while (active_ > 0 && !idle_can_begin());
+    }
+  }
+
+ private:
+  using Wide = Lanes<double, W>;
+  using WideX = ReboundState<X, Wide>;
+  using WideP = ReboundState<P, Wide>;
+  using Run = RunOfLane<F, X, P, M, E...>;
+  using Source = typename Run::Source;
+
+  template <class WideState, class Narrow>
+  [[nodiscard]] static WideState widened(const Narrow& narrow) {
+    if constexpr (FixedSize<WideState>) {
+      WideState wide{};
+      for (std::size_t i = 0; i < narrow.size(); ++i) wide.data()[i] = Wide(narrow.data()[i]);
+      return wide;
+    } else {
+      return WideState(narrow.data(), narrow.data() + narrow.size());
+    }
+  }
+  template <class WideState, class Narrow>
+  static void put(const Narrow& narrow, std::size_t lane, WideState& wide) {
+    for (std::size_t i = 0; i < wide.size(); ++i) wide.data()[i].set(lane, narrow.data()[i]);
+  }
+  template <class WideState, class Narrow>
+  static void get(const WideState& wide, std::size_t lane, Narrow& narrow) {
+    for (std::size_t i = 0; i < wide.size(); ++i) narrow.data()[i] = wide.data()[i][lane];
+  }
+
+  // ---- runs begin and end
+
+  [[nodiscard]] bool idle_can_begin() const {
+    return active_ < W && !exhausted_ && (!pending_ || queue_.has_room_for(*pending_));
+  }
+  // Gives every idle lane a run, as long as there are any.
+  void refill() {
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      while (!sizes_.is_active(lane) && !exhausted_) {
+        if (!pending_) pending_ = queue_.take();
+        if (!pending_) {
+          exhausted_ = true;
+        } else if (!queue_.has_room_for(*pending_)) {
+          return;
+        } else {
+          begin(*std::exchange(pending_, std::nullopt), lane);
+        }
+      }
+    }
+  }
+  void begin(std::size_t run, std::size_t lane) {
+    auto start = as_run_start(starts_[run]);
+    Run& one = runs_[lane];
+    sizes_.begin_run(lane);
+    ++active_;
+    if (start.x.size() != x_.size() || start.p.size() != system_.p.size()) {
+      static_cast<void>(one.begin(run, as_run_start(starts_[0])));
+      one.end(Ending::invalid_input, "its start has another number of components or parameters than that of run 0");
+      return finish(lane);
+    }
+    one.begin(run, std::move(start)) ? begin_motion(lane) : finish(lane);
+  }
+  // The motion of a lane begins, or begins anew after an event, where its run is.
+  void begin_motion(std::size_t lane) {
+    Run& one = runs_[lane];
+    const double limit = one.limit();
+    double size = 0;
+    if (!sizes_.fixed()) {
+      size = one.steps().first_size(limit, settings_.options, one.result().outcome);
+      if (size == 0) return finish(lane);
+    }
+    put(one.x(), lane, x_);
+    put(one.p(), lane, system_.p);
+    sizes_.begin_motion(lane, one.t(), size, limit);
+    fresh_.set(lane, 0.0);
+  }
+  void finish(std::size_t lane) {
+    sizes_.end_run(lane);
+    --active_;
+    auto& result = runs_[lane].result();
+    result.steps = sizes_.steps(lane);
+    result.rejected = sizes_.rejected(lane);
+    queue_.put(runs_[lane].finish());
+  }
+  // Ends the run of a lane where its next step would begin.
+  [[gnu::noinline]] void fail(const typename LaneSizes<W>::Refusal& refusal) {
+    const std::size_t lane = refusal.lane;
+    if (!sizes_.is_active(lane)) return;
+    Run& one = runs_[lane];
+    set_place(lane);
+    one.result().outcome = one.steps().failure(refusal.ending, sizes_.t()[lane], sizes_.h()[lane], refusal.error,
+                                               one.x(), worst_component(lane), settings_.options);
+    finish(lane);
+  }
+  void set_place(std::size_t lane) {
+    X x = runs_[lane].x();
+    get(x_, lane, x);
+    runs_[lane].set_place(sizes_.t()[lane], x);
+  }
+  [[nodiscard]] std::size_t worst_component(std::size_t lane) const {
+    std::size_t worst = 0;
+    double greatest = -1;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const Wide scale = tolerance_.all().scale(i, x_.data()[i], x_new_.data()[i]);
+      const Wide part = abs(M::error_of(work_, sizes_.h(), i)) / scale;
+      if (part[lane] > greatest) greatest = part[lane], worst = i;
+    }
+    return worst;
+  }
+  // The runs that have begun end where they are; no other begins.
+  [[gnu::noinline]] void interrupt() {
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (!sizes_.is_active(lane)) continue;
+      set_place(lane);
+      runs_[lane].end(Ending::interrupted);
+      finish(lane);
+    }
+    exhausted_ = true;
+    pending_.reset();
+  }
+
+  // ---- steps
+
+  void take_step() {
+    sizes_.choose();
+    refresh();
+    step();
+    judge();
+    if (sizes_.any_refused()) [[unlikely]]
+      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
+    commit();
+    if (sizes_.any_refused()) [[unlikely]]
+      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
+    if (++since_look_ >= steps_between_looks) {
+      since_look_ = 0;
+      if (queue_.interrupted()) interrupt();
+    }
+  }
+
+  void step() {
+    if constexpr (is_small) {
+      flat_step();
+    } else {
+      static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
+    }
+  }
+  // With f compiled into it, however often it occurs: a call sends the lanes of a small state through memory.
+  [[gnu::flatten]] void flat_step() {
+    static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
+  }
+
+  // f at the beginning of the step, for the lanes that have not kept it from the step before.
+  void refresh() {
+    const auto fresh = fresh_ != Wide(0.0), active = sizes_.active();
+    if (none(active & fresh)) {
+      evaluate(system_, sizes_.t(), x_, work_.k[0]);
+    } else if (any(active & !fresh)) {
+      evaluate(system_, sizes_.t(), x_, slope_);
+      for (std::size_t i = 0; i < x_.size(); ++i)
+        work_.k[0].data()[i] = select(fresh, work_.k[0].data()[i], slope_.data()[i]);
+    }
+    fresh_ = Wide(1.0);
+    work_.start_fresh = true;
+  }
+
+  void judge() {
+    if constexpr (M::error_order > 0) {
+      if (!sizes_.fixed()) {
+        const Wide square = M::error_square(work_, sizes_.h(), x_, x_new_, tolerance_.all());
+        return sizes_.judge(square, M::error_order);
+      }
+    }
+    sizes_.judge_fixed(zero_if_all_finite(x_new_));
+  }
+
+  // What happens to a lane at the end of its step.
+  enum class Next : char { step, ended, begins_anew };
+
+  // The accepted lanes go on to the end of their steps, and what happens on the way happens.
+  void commit() {
+    std::array<Next, W> next{};
+    Wide asked(0.0);  // lanes whose run has evaluated the polynomial of the step
+    bool any_next = false;
+    if constexpr (Source::any_guard) {
+      interpolate();
+      asked = Wide(1.0);
+      any_next = look_at_lanes(near_guards(), next, asked);
+    } else if (Source::any_scheduled || has_rows_) {
+      any_next = look_at_lanes(typename Wide::Mask(false), next, asked);
+    } else if (any(sizes_.at_limit())) {
+      any_next = true;
+      for (std::size_t lane = 0; lane < W; ++lane)
+        if (sizes_.at_limit()[lane]) arrive_at_end(lane), next[lane] = Next::ended;
+    }
+    keep_slopes(asked);
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      x_.data()[i] = select(sizes_.accepted(), x_new_.data()[i], x_.data()[i]);
+    sizes_.commit();
+    if (!any_next) [[likely]]
+      return;
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (next[lane] == Next::ended) finish(lane);
+      if (next[lane] == Next::begins_anew) begin_motion(lane);
+    }
+  }
+  void arrive_at_end(std::size_t lane) {
+    X x = runs_[lane].x();
+    get(x_new_, lane, x);
+    runs_[lane].set_place(sizes_.end()[lane], x);
+    runs_[lane].end(Ending::reached_end);
+  }
+
+  // f at the end of a step is that at the start of the next one, where the method computes it, or the polynomial of the
+  // step has needed it. It is kept by the lanes that have asked for it, whatever their neighbours do.
+  void keep_slopes(const Wide& asked) {
+    constexpr bool always = M::tableau.first_same_as_last();
+    M::accept(work_, sizes_.accepted());
+    if constexpr (!always) fresh_ = select(sizes_.accepted(), asked, fresh_);
+  }
+
+  void interpolate() {
+    static_cast<void>(M::interpolate(system_, sizes_.t(), x_, sizes_.h(), x_new_, work_, polynomial_));
+  }
+
+  // Lets the runs of those lanes pass their step in which there is something: a guard near to zero, a row, a tick.
+  [[nodiscard]] bool look_at_lanes(const typename Wide::Mask& near, std::array<Next, W>& next, Wide& asked) {
+    bool any_next = false, interpolated = Source::any_guard;
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (!sizes_.is_active(lane) || !sizes_.accepted()[lane]) continue;
+      Run& one = runs_[lane];
+      const double end = sizes_.end()[lane];
+      const bool looks = near[lane] || one.must_look() || one.has_row_before(end);
+      if (!looks && !one.ends_at(end)) {
+        one.skip_step();
+        continue;
+      }
+      if (looks && !std::exchange(interpolated, true)) interpolate();
+      next[lane] = pass_step(lane, asked);
+      any_next = any_next || next[lane] != Next::step;
+    }
+    return any_next;
+  }
+  [[nodiscard]] Next pass_step(std::size_t lane, Wide& asked) {
+    Run& one = runs_[lane];
+    auto step = one.steps().took(sizes_.t()[lane], sizes_.h()[lane], sizes_.end()[lane]);
+    get(x_, lane, step.begin);
+    get(x_new_, lane, step.end);
+    for (std::size_t j = 0; j < polynomial_.c.size(); ++j) get(polynomial_.c[j], lane, step.polynomial.c[j]);
+    const bool changed = one.pass_step();
+    if (!Source::any_guard && one.steps().asked()) asked.set(lane, 1.0);
+    if (one.ended()) return Next::ended;
+    if (changed) return Next::begins_anew;
+    if (Source::any_scheduled) sizes_.set_limit(lane, one.limit());
+    return Next::step;
+  }
+
+  // The lanes in which a guard may cross zero in the step: it does not where its distance from zero exceeds its whole
+  // range over nine places of the step, see EventLocator.
+  [[nodiscard]] typename Wide::Mask near_guards() {
+    std::array<Wide, Source::count> least, greatest;
+    const auto sample = [&](bool first, const Wide& t, const WideX& x) {
+      std::size_t i = 0;
+      const auto one = [&](const auto& event) {
+        if constexpr (has_guard<decltype(event)>) {
+          const Wide g = guard_value(event.guard, t, x, system_.p);
+          least[i] = first ? g : select(g >= least[i], least[i], g);
+          greatest[i] = first ? g : select(g <= greatest[i], greatest[i], g);
+        }
+        ++i;
+      };
+      std::apply([&](const auto&... event) { (one(event), ...); }, settings_.events);
+    };
+    sample(true, sizes_.t(), x_);
+    for (std::size_t k = 1; k + 1 < bernstein::count; ++k) {
+      const Wide theta(bernstein::nodes[k]);
+      polynomial_(theta, slope_);
+      sample(false, sizes_.t() + theta * sizes_.h(), slope_);
+    }
+    sample(false, sizes_.end(), x_new_);
+    typename Wide::Mask near(false);
+    for (std::size_t i = 0; i < Source::count; ++i) {
+      if (!is_guard_[i]) continue;
+      const Wide range = greatest[i] - least[i];
+      near = near | !((least[i] > range) | (greatest[i] < -range));
+    }
+    return near;
+  }
+
+  static constexpr bool is_small = [] {
+    if constexpr (FixedSize<X>) {
+      return std::tuple_size_v<X> <= 12;
+    } else {
+      return false;
+    }
+  }();
+  static constexpr std::size_t steps_between_looks = 64;
+  static constexpr std::array<bool, Source::count> is_guard_{has_guard<E>...};
+
+  F f_;
+  const Starts& starts_;
+  const Settings& settings_;
+  Queue& queue_;
+  SystemWithParameters<F, WideP> system_;
+  WideX x_, x_new_, slope_;
+  typename M::template Workspace<WideX> work_;
+  Interpolant<WideX, M::dense_degree> polynomial_;
+  LaneSizes<W> sizes_;
+  LaneTolerance<W> tolerance_;
+  Wide fresh_{0.0};  // 1 where work_ has f at the beginning of the next step
+  std::vector<Run> runs_;
+  bool has_rows_;
+  bool exhausted_ = false;  // no run is left to begin
+  std::size_t active_ = 0, since_look_ = 0;
+  std::optional<std::size_t> pending_;  // a run that waits for room
+};
+
+}  // namespace continuo::detail

@@ -1,0 +1,169 @@
+// A run has the same bits whatever the number of lanes and of threads, the order of the starts and the other runs; and
+// those of solve where f has no elementary functions.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <tests/ensembles/same_runs.hpp>
+
+#include <continuo/ensembles/ensemble.hpp>
+#include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/dormand_prince5.hpp>
+#include <continuo/methods/explicit_rk/rk4.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/explicit_rk/verner7.hpp>
+#include <continuo/solve/solve.hpp>
+
+namespace continuo::ensembles_test {
+namespace {
+
+using X = std::array<double, 2>;
+using P = std::array<double, 3>;
+using List = std::vector<RunStart<X, P>>;
+using Result = Ensemble<X, P>;
+
+// A driven pendulum with damping: elementary functions, and a right-hand side that depends on time.
+const auto pendulum = [](const auto& t, const auto& x, auto& dxdt, const auto& p) {
+  using std::exp, std::sin;
+  dxdt[0] = x[1];
+  dxdt[1] = -p[0] * sin(x[0]) - p[1] * x[1] + exp(-0.1 * t) * p[2];
+};
+// Predator and prey: only sums and products.
+const auto predators = [](const auto&, const auto& x, auto& dxdt, const auto& p) {
+  dxdt[0] = x[0] * (p[0] - p[1] * x[1]);
+  dxdt[1] = x[1] * (x[0] - p[2]);
+};
+
+List random_starts(std::size_t count, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> number(0.5, 2);
+  List list(count);
+  for (auto& start : list) {
+    for (double& x : start.x) x = number(generator);
+    for (double& p : start.p) p = number(generator);
+  }
+  return list;
+}
+
+const auto turn = rises("turn", [](const auto&, const auto& x) { return x[1] - 1.0; });
+// Takes effect in its own run alone, as a mode would.
+const auto stop_of_prey = falls(
+    "stop of prey", [](const auto&, const auto& x, const auto& p) { return x[0] - 0.5 * p[2]; },
+    [](auto& now, auto& p) {
+      now.x[1] *= 0.5;
+      p[0] += 0.125;
+    });
+
+template <std::size_t W, class M, class F, class... Events>
+Result run(const F& f, const List& list, int threads, const Events&... events) {
+  return ensemble<W>(f, list, {0, 6}, M{}, {.rtol = 1e-7, .save_at = {0, 0.7, 3.1, 3.2, 6}, .threads = threads},
+                     events...);
+}
+
+template <class M>
+class EnsembleOf : public ::testing::Test {};
+using Methods = ::testing::Types<Tsitouras5, Dop853>;
+TYPED_TEST_SUITE(EnsembleOf, Methods, );
+
+TYPED_TEST(EnsembleOf, ARunHasTheSameBitsWhateverTheLanesTheThreadsAndTheOrder) {
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 4);
+  List list = random_starts(37, 5);
+  const Result alone = run<1, TypeParam>(pendulum, list, 1, turn);
+  ASSERT_EQ(alone.failures(), 0U);
+  const auto compare = [&](const Result& other) {
+    ASSERT_EQ(other.runs.size(), list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) expect_same(alone.runs[i], other.runs[i]);
+  };
+  compare(run<2, TypeParam>(pendulum, list, 2, turn));
+  compare(run<3, TypeParam>(pendulum, list, 3, turn));
+  compare(run<8, TypeParam>(pendulum, list, 1, turn));
+  compare(run<8, TypeParam>(pendulum, list, 2, turn));
+
+  std::vector<std::size_t> order(list.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(9));
+  List shuffled;
+  for (const std::size_t i : order) shuffled.push_back(list[i]);
+  const Result other = run<8, TypeParam>(pendulum, shuffled, 2, turn);
+  for (std::size_t i = 0; i < order.size(); ++i) expect_same(alone.runs[order[i]], other.runs[i]);
+}
+
+TYPED_TEST(EnsembleOf, TheOtherRunsDoNotMatter) {
+  List list = random_starts(20, 6);
+  const Result all = run<4, TypeParam>(predators, list, 1, stop_of_prey);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{7}, std::size_t{19}})
+    expect_same(all.runs[i], run<16, TypeParam>(predators, List{list[i]}, 1, stop_of_prey).runs[0]);
+  list[3].x[0] = NAN;  // in a lane between others
+  list[8].p[1] = NAN;
+  const Result spoiled = run<4, TypeParam>(predators, list, 1, stop_of_prey);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (i != 3 && i != 8) expect_same(all.runs[i], spoiled.runs[i]);
+  EXPECT_EQ(spoiled.runs[3].outcome.ending, Ending::invalid_input);
+  EXPECT_EQ(spoiled.runs[8].outcome.ending, Ending::not_finite);
+  EXPECT_EQ(spoiled.failures(), 2U);
+}
+
+#ifndef __FMA__  // with fused operations the compiler rounds one number and lanes of numbers in different places
+
+template <class M>
+class EnsembleAndSolve : public ::testing::Test {};
+using AllMethods = ::testing::Types<BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7>;
+TYPED_TEST_SUITE(EnsembleAndSolve, AllMethods, );
+
+TYPED_TEST(EnsembleAndSolve, HaveTheSameBits) {
+  const List list = random_starts(9, 7);
+  const auto kick = every("kick", 1.25, 0.5, [](auto& now) { now.x[0] += 0.25; });
+  const Result result = run<4, TypeParam>(predators, list, 1, turn, stop_of_prey, kick);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    P p = list[i].p;
+    const auto f = [&p](double t, const X& x, X& dxdt) { predators(t, x, dxdt, p); };
+    const auto guard = [&p](double t, const X& x) { return stop_of_prey.guard(t, x, p); };
+    const auto action = [&p](EventAction<X>& now) {
+      stop_of_prey.action(now, p);
+      now.restart = true;
+    };
+    const auto solution = solve(f, list[i].x, {0, 6}, TypeParam{},
+                                {.rtol = 1e-7,
+                                 .events = {turn, falls<X>("stop", guard, action), kick},
+                                 .save = Save<X>::at({0, 0.7, 3.1, 3.2, 6})});
+    RunResult<X, P> expected{i,
+                             solution.outcome,
+                             solution.final_state(),
+                             p,
+                             solution.statistics.steps,
+                             solution.statistics.rejected,
+                             solution.events,
+                             solution.x};
+    ASSERT_TRUE(solution.outcome);
+    ASSERT_GE(solution.events.size(), 5U);
+    expect_same(result.runs[i], expected);
+  }
+}
+
+TEST(EnsembleAndSolve, HaveTheSameBitsWithFixedStepsAndForVectors) {
+  const List list = random_starts(7, 8);
+  const auto fixed = ensemble<3>(predators, list, {2, -1.03}, Rk4{}, {.step = 0.0625});
+  std::vector<RunStart<std::vector<double>, std::vector<double>>> vectors;
+  for (const auto& start : list)
+    vectors.push_back({{start.x.begin(), start.x.end()}, {start.p.begin(), start.p.end()}});
+  const auto of_vectors = ensemble<2>(predators, vectors, {0, 5}, Dop853{}, {.rtol = 1e-9});
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const P& p = list[i].p;
+    const auto f = [&p](double t, const auto& x, auto& dxdt) { predators(t, x, dxdt, p); };
+    EXPECT_EQ(solve(f, list[i].x, {2, -1.03}, Rk4{}, {.step = 0.0625}).final_state(), fixed.runs[i].x);
+    EXPECT_EQ(solve(f, vectors[i].x, {0, 5}, Dop853{}, {.rtol = 1e-9}).final_state(), of_vectors.runs[i].x);
+  }
+}
+
+#endif
+
+}  // namespace
+}  // namespace continuo::ensembles_test
