@@ -49,12 +49,14 @@ class Lanes {
   explicit Lanes(const std::array<Real, W>& values) : part_(std::bit_cast<Parts>(values)) {}
 
   /// The number of one lane, from 0 to W - 1.
-  Real operator[](std::size_t lane) const { return values()[lane]; }
+  Real operator[](std::size_t lane) const {
+    Real value;
+    std::memcpy(&value, reinterpret_cast<const char*>(&part_) + lane * sizeof(Real), sizeof(Real));
+    return value;
+  }
   /// Replaces the number of one lane.
   void set(std::size_t lane, Real value) {
-    std::array<Real, W> all = values();
-    all[lane] = value;
-    part_ = std::bit_cast<Parts>(all);
+    std::memcpy(reinterpret_cast<char*>(&part_) + lane * sizeof(Real), &value, sizeof(Real));
   }
   /// The numbers of all lanes.
   [[nodiscard]] std::array<Real, W> values() const { return std::bit_cast<std::array<Real, W>>(part_); }

@@ -187,6 +187,9 @@ class LaneDriver {
   // ---- steps
 
   void take_step() {
+    if constexpr (is_small && !Run::has_events) {
+      if (sizes_.fixed() && !has_rows_) take_free_steps();
+    }
     sizes_.choose();
     refresh();
     step();
@@ -212,6 +215,40 @@ class LaneDriver {
   // With f compiled into it, however often it occurs: a call sends the lanes of a small state through memory.
   [[gnu::flatten]] void flat_step() {
     static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
+  }
+
+  // Steps of a fixed size with which no lane ends need no look at each, only whether they have stayed finite. Where
+  // they have not, they are taken again one by one.
+  void take_free_steps() {
+    const std::size_t count = sizes_.free_steps(most_free_steps);
+    if (count == 0) return;
+    refresh();
+    const WideX start = x_;
+    const Wide nothing = flat_free_steps(count);
+    fresh_ = Wide(M::tableau.first_same_as_last() ? 1.0 : 0.0);
+    if (any(sizes_.active() & (nothing != Wide(0.0)))) [[unlikely]] {
+      x_ = start;
+      fresh_ = Wide(0.0);
+      return;
+    }
+    sizes_.pass_free_steps(count);
+  }
+  // On copies, which nothing else can see, so that the compiler may keep them in registers.
+  [[gnu::flatten]] Wide flat_free_steps(std::size_t count) {
+    auto system = system_;
+    auto work = work_;
+    WideX x = x_, x_new = x_;
+    const Wide size = sizes_.fixed_size(), first = sizes_.fixed_steps(), begin = sizes_.grid();
+    Wide nothing(0.0), step(0.0);
+    for (std::size_t i = 0; i < count; ++i, step += Wide(1.0)) {
+      static_cast<void>(M::step(system, begin + (first + step) * size, x, size, false, work, x_new));
+      M::accept(work);
+      nothing += zero_if_all_finite(x_new);
+      x = x_new;
+    }
+    x_ = x;
+    work_ = work;
+    return nothing;
   }
 
   // f at the beginning of the step, for the lanes that have not kept it from the step before.
@@ -358,7 +395,7 @@ class LaneDriver {
       return false;
     }
   }();
-  static constexpr std::size_t steps_between_looks = 64;
+  static constexpr std::size_t steps_between_looks = 64, most_free_steps = 256;
   static constexpr std::array<bool, Source::count> is_guard_{has_guard<E>...};
 
   F f_;

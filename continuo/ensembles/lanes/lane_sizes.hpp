@@ -112,6 +112,28 @@ class LaneSizes {
     }
   }
 
+  /// Of steps of a fixed size, how many of the next every active lane takes in any case: at most `most`.
+  [[nodiscard]] std::size_t free_steps(std::size_t most) const {
+    const std::array<double, W> left = (abs(limit_ - t_) / Wide(step_)).values();
+    double count = static_cast<double>(most) + safety_of_count;
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (!is_active(lane)) continue;
+      count = std::min({count, left[lane], max_steps_ - steps_[lane]});
+    }
+    return count > safety_of_count ? static_cast<std::size_t>(count - safety_of_count) : 0;
+  }
+  /// The size of such steps, where their grid begins, and how many of it there were.
+  [[nodiscard]] Wide fixed_size() const { return Wide(forward_ * step_); }
+  [[nodiscard]] const Wide& grid() const { return grid_; }
+  [[nodiscard]] const Wide& fixed_steps() const { return grid_steps_; }
+  /// All active lanes have taken this many of the free steps.
+  void pass_free_steps(std::size_t count) {
+    const Wide steps = select(active(), Wide(static_cast<double>(count)), Wide(0.0));
+    steps_ += steps;
+    grid_steps_ += steps;
+    t_ = select(active(), grid_ + grid_steps_ * fixed_size(), t_);
+  }
+
   /// Judges a step by the squares of its errors, in units of the tolerance.
   void judge(const Wide& square, int error_order) {
     const std::array<double, W> squares = square.values();
@@ -216,6 +238,8 @@ class LaneSizes {
       if (refused_[i].lane == lane) return;
     refused_[refused_count_++] = {lane, ending, error};
   }
+
+  static constexpr double safety_of_count = 2;  // steps: the last ones are looked at one by one
 
   double forward_, step_, max_step_;
   Controller controller_;

@@ -74,8 +74,10 @@ class RunOfLane {
 
   /// Begins a run: its first events happen. False where it has ended at once.
   [[nodiscard]] bool begin(std::size_t run, RunStart<X, P>&& start) {
-    result_ = {};
     result_.run = run;
+    result_.outcome = {};
+    result_.events.clear();
+    result_.rows.clear();
     t_ = settings_.interval.from;
     x_ = std::move(start.x);
     steps_.system().p = std::move(start.p);
