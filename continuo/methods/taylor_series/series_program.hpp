@@ -1,0 +1,517 @@
+// A list of operations on truncated Taylor series, evaluated order by order: coefficient k of every result from the
+// coefficients up to k of its operands. All coefficients are kept, so that the series of a solution, whose coefficient
+// k + 1 needs coefficient k of its derivative, costs one sweep: order^2 / 2 products for each product in the equations.
+//
+//   SeriesProgram<double> program;
+//   const std::uint32_t x = program.add_variable(), y = program.add(SeriesCode::product, x, x);
+//   program.begin(8);                        // orders up to 8
+//   program.coefficient(0, x) = 2, program.coefficient(1, x) = 1;
+//   for (std::size_t k = 0; k <= 8; ++k) program.evaluate(k);
+//   program.coefficient(2, y)                // of (2 + s)^2: 1
+//
+// The recurrences: A. Griewank, A. Walther, "Evaluating Derivatives", 2nd ed., SIAM (2008), chapter 13, tables 13.1 and
+// 13.2. Each follows from a linear differential equation of the function, compared coefficient by coefficient.
+//
+// An operation may have many members, with operands side by side: the points of a grid, the pairs of N bodies. What is
+// piecewise constant (floor, a comparison) is that of the coefficient of order 0; abs, min, max and tables, which are
+// continuous, take the branch that the first coefficients that differ lead to.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace continuo {
+
+enum class SeriesCode : std::uint8_t {
+  copy,  // members gathered from anywhere
+  add,
+  subtract,
+  negate,
+  scale,             // a b, where a has no coefficient but that of order 0
+  divide_by_number,  // a / b, where b has none
+  product,
+  square,
+  quotient,
+  square_root,
+  exponential,
+  logarithm,
+  power,        // a^b, where b has no coefficient but that of order 0
+  sine_cosine,  // two results, the cosines after the sines; of the next three the second is an aid
+  hyperbolic_sine_cosine,
+  tangent,             // and 1 + tan^2
+  hyperbolic_tangent,  // and 1 - tanh^2
+  arc_tangent,         // of a, with b = 1 + a^2
+  arc_sine,            // of a, with b = sqrt(1 - a^2)
+  arc_cosine,          // the same
+  arc_tangent2,        // of a and b, with c = a^2 + b^2
+  minimum,
+  maximum,
+  absolute,
+  select,  // a != 0 ? b : c
+  table,   // and its slope
+  // piecewise constant
+  table_slope,
+  sign,
+  floor,
+  ceiling,
+  less,
+  less_equal,
+  equal,
+  not_equal,
+  logical_and,
+  logical_or,
+  logical_not,
+};
+
+/// Whether the operation has jumps or corners, which no coefficient shows before they are there.
+[[nodiscard]] constexpr bool is_piecewise(SeriesCode code) {
+  return code >= SeriesCode::minimum;
+}
+
+/// A piece of a function that is linear between two points: value + slope (x - from) from `from` on.
+template <class Real>
+struct LinearPiece {
+  Real from, value, slope;
+};
+
+template <class Real>
+class SeriesProgram {
+ public:
+  using Register = std::uint32_t;
+  /// The piece of a table that holds x.
+  using Pieces = std::function<LinearPiece<Real>(const Real& x)>;
+
+  /// Forgets all operations, and keeps the memory.
+  void clear() {
+    operations_.clear();
+    numbers_.clear();
+    lists_.clear();
+    tables_.clear();
+    registers_ = 0;
+    has_corners_ = false;
+  }
+
+  /// A series whose coefficients the caller sets.
+  [[nodiscard]] Register add_variable(std::uint32_t count = 1) { return std::exchange(registers_, registers_ + count); }
+  /// A number: the coefficients of higher orders are 0.
+  [[nodiscard]] Register add_number(const Real& value) {
+    numbers_.push_back({registers_, value});
+    return registers_++;
+  }
+  /// The n-th number that was added is another one from the next `begin` on.
+  void set_number(std::size_t n, const Real& value) { numbers_[n].value = value; }
+  [[nodiscard]] std::size_t number_count() const { return numbers_.size(); }
+  /// The results of `count` equal operations, side by side as their operands are. Of those with two results, the
+  /// second ones follow the first ones.
+  [[nodiscard]] Register add(SeriesCode code, Register a, Register b = 0, Register c = 0, std::uint32_t count = 1) {
+    operations_.push_back({code, registers_, count, a, b, c});
+    has_corners_ = has_corners_ || is_piecewise(code);
+    return std::exchange(registers_, registers_ + count * results_of(code));
+  }
+  /// Series that lie anywhere, side by side.
+  [[nodiscard]] Register add_copies(std::span<const Register> from) {
+    const auto count = static_cast<std::uint32_t>(from.size());
+    operations_.push_back({SeriesCode::copy, registers_, count, static_cast<Register>(lists_.size()), 0, 0});
+    lists_.insert(lists_.end(), from.begin(), from.end());
+    return std::exchange(registers_, registers_ + count);
+  }
+  /// The number of a table, for operations on it: their operand b.
+  [[nodiscard]] Register add_table(Pieces pieces) {
+    tables_.push_back(std::move(pieces));
+    return static_cast<Register>(tables_.size() - 1);
+  }
+
+  [[nodiscard]] bool has_corners() const { return has_corners_; }
+  [[nodiscard]] std::size_t register_count() const { return registers_; }
+
+  /// Room for coefficients up to this order, all of them 0 but the numbers'.
+  void begin(std::size_t order) {
+    rows_.assign((order + 1) * registers_, Real(0));
+    for (const Number& number : numbers_) rows_[number.place] = number.value;
+  }
+  /// The coefficient of s^k.
+  [[nodiscard]] Real& coefficient(std::size_t k, Register place) { return rows_[k * registers_ + place]; }
+  [[nodiscard]] const Real& coefficient(std::size_t k, Register place) const { return rows_[k * registers_ + place]; }
+
+  /// Coefficient k of all results, those of lower orders being there.
+  void evaluate(std::size_t k) {
+    for (const Operation& operation : operations_) evaluate(operation, k);
+  }
+
+ private:
+  struct Operation {
+    SeriesCode code;
+    Register result;
+    std::uint32_t count;
+    Register a, b, c;
+  };
+  struct Number {
+    Register place;
+    Real value;
+  };
+
+  [[nodiscard]] static std::uint32_t results_of(SeriesCode code) {
+    const bool is_double =
+        (code >= SeriesCode::sine_cosine && code <= SeriesCode::hyperbolic_tangent) || code == SeriesCode::table;
+    return is_double ? 2 : 1;
+  }
+
+  [[nodiscard]] Real* row(std::size_t k) { return rows_.data() + k * registers_; }
+
+  /// each(i) becomes the coefficient of member i.
+  template <class Each>
+  void set_each(const Operation& o, std::size_t k, Each&& each) {
+    Real* const r = row(k) + o.result;
+    for (std::uint32_t i = 0; i < o.count; ++i) r[i] = each(i);
+  }
+
+  /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j) a_j b_(k - j) for j from `first` to `last`,
+  /// w(j) = j or 1. A number of members at once, whose sums do not wait for each other.
+  template <bool weighted, class Finish>
+  void set_by_sum(const Operation& o, std::size_t k, Register a, Register b, std::size_t first, std::size_t last,
+                  Finish&& finish) {
+    constexpr std::uint32_t at_once = 8;
+    Real* const r = row(k) + o.result;
+    std::uint32_t begin = 0;
+    for (; begin + at_once <= o.count; begin += at_once) {
+      Real sums[at_once] = {};
+      for (std::size_t j = first; j <= last; ++j) {
+        const Real* const u = row(j) + a + begin;
+        const Real* const v = row(k - j) + b + begin;
+        const Real weight = Real(static_cast<double>(j));
+        for (std::uint32_t i = 0; i < at_once; ++i)
+          sums[i] += weighted ? Real(weight * (u[i] * v[i])) : Real(u[i] * v[i]);
+      }
+      for (std::uint32_t i = 0; i < at_once; ++i) r[begin + i] = finish(begin + i, sums[i]);
+    }
+    for (; begin < o.count; ++begin) r[begin] = finish(begin, sum<weighted>(k, a + begin, b + begin, first, last));
+  }
+
+  template <bool weighted>
+  [[nodiscard]] Real sum(std::size_t k, Register a, Register b, std::size_t first, std::size_t last) {
+    Real total(0);
+    for (std::size_t j = first; j <= last; ++j) {
+      const Real product = row(j)[a] * row(k - j)[b];
+      total += weighted ? Real(Real(static_cast<double>(j)) * product) : product;
+    }
+    return total;
+  }
+
+  void evaluate(const Operation& o, std::size_t k);
+  void begin_functions(const Operation& o);
+  void continue_functions(const Operation& o, std::size_t k);
+  void choose(const Operation& o, std::size_t k);
+  void step_functions(const Operation& o);
+  void pair(const Operation& o, std::size_t k, const Real& sign);
+  void with_square(const Operation& o, std::size_t k, const Real& sign);
+  void power(const Operation& o, std::size_t k);
+  void table(const Operation& o, std::size_t k);
+  [[nodiscard]] Real power_of(std::size_t k, Register a, Register result, const Real& p);
+
+  std::vector<Operation> operations_;
+  std::vector<Number> numbers_;
+  std::vector<Register> lists_;
+  std::vector<Pieces> tables_;
+  std::vector<Real> rows_;  // coefficients of order 0, then of order 1, ...
+  std::uint32_t registers_ = 0;
+  bool has_corners_ = false;
+};
+
+// What is linear, and the products; the others below.
+template <class Real>
+void SeriesProgram<Real>::evaluate(const Operation& o, std::size_t k) {
+  const Real *const a = row(k) + o.a, *const b = row(k) + o.b;
+  switch (o.code) {
+    case SeriesCode::copy:
+      return set_each(o, k, [&](std::uint32_t i) { return row(k)[lists_[o.a + i]]; });
+    case SeriesCode::add:
+      return set_each(o, k, [&](std::uint32_t i) { return a[i] + b[i]; });
+    case SeriesCode::subtract:
+      return set_each(o, k, [&](std::uint32_t i) { return a[i] - b[i]; });
+    case SeriesCode::negate:
+      return set_each(o, k, [&](std::uint32_t i) { return -a[i]; });
+    case SeriesCode::scale:
+      return set_each(o, k, [&, factor = row(0) + o.a](std::uint32_t i) { return factor[i] * b[i]; });
+    case SeriesCode::divide_by_number:
+      return set_each(o, k, [&, divisor = row(0) + o.b](std::uint32_t i) { return a[i] / divisor[i]; });
+    case SeriesCode::product:
+      return set_by_sum<false>(o, k, o.a, o.b, 0, k, [](std::uint32_t, const Real& sum) { return sum; });
+    case SeriesCode::square: {
+      if (k == 0) return set_each(o, k, [&](std::uint32_t i) { return a[i] * a[i]; });
+      // Twice the half of the terms, and the middle one.
+      const bool is_even = k % 2 == 0;
+      const Real* const middle = row(k / 2) + o.a;
+      return set_by_sum<false>(o, k, o.a, o.a, 0, (k - 1) / 2, [&](std::uint32_t i, const Real& sum) {
+        return is_even ? 2 * sum + middle[i] * middle[i] : 2 * sum;
+      });
+    }
+    case SeriesCode::quotient: {
+      const Real* const divisor = row(0) + o.b;
+      if (k == 0) return set_each(o, k, [&](std::uint32_t i) { return a[i] / divisor[i]; });
+      return set_by_sum<false>(o, k, o.b, o.result, 1, k,
+                               [&](std::uint32_t i, const Real& sum) { return (a[i] - sum) / divisor[i]; });
+    }
+    default:
+      if (o.code >= SeriesCode::table_slope) {
+        if (k == 0) step_functions(o);
+      } else if (o.code >= SeriesCode::minimum) {
+        choose(o, k);
+      } else if (k == 0) {
+        begin_functions(o);
+      } else {
+        continue_functions(o, k);
+      }
+  }
+}
+
+/// The values of functions, of order 0.
+template <class Real>
+void SeriesProgram<Real>::begin_functions(const Operation& o) {
+  using std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp, std::log, std::pow, std::sin,
+      std::sinh, std::sqrt, std::tan, std::tanh;
+  const Real *const a = row(0) + o.a, *const b = row(0) + o.b;
+  Real *const r = row(0) + o.result, *const second = r + o.count;
+  for (std::uint32_t i = 0; i < o.count; ++i) {
+    switch (o.code) {
+      case SeriesCode::square_root:
+        r[i] = sqrt(a[i]);
+        break;
+      case SeriesCode::exponential:
+        r[i] = exp(a[i]);
+        break;
+      case SeriesCode::logarithm:
+        r[i] = log(a[i]);
+        break;
+      case SeriesCode::power:
+        r[i] = pow(a[i], b[i]);
+        break;
+      case SeriesCode::sine_cosine:
+        r[i] = sin(a[i]), second[i] = cos(a[i]);
+        break;
+      case SeriesCode::hyperbolic_sine_cosine:
+        r[i] = sinh(a[i]), second[i] = cosh(a[i]);
+        break;
+      case SeriesCode::tangent:
+        r[i] = tan(a[i]), second[i] = Real(1) + r[i] * r[i];
+        break;
+      case SeriesCode::hyperbolic_tangent:
+        r[i] = tanh(a[i]), second[i] = (Real(1) - r[i]) * (Real(1) + r[i]);
+        break;
+      case SeriesCode::arc_tangent:
+        r[i] = atan(a[i]);
+        break;
+      case SeriesCode::arc_sine:
+        r[i] = asin(a[i]);
+        break;
+      case SeriesCode::arc_cosine:
+        r[i] = acos(a[i]);
+        break;
+      default:
+        r[i] = atan2(a[i], b[i]);
+    }
+  }
+}
+
+/// Those of order 1 and more.
+template <class Real>
+void SeriesProgram<Real>::continue_functions(const Operation& o, std::size_t k) {
+  const Real *const a = row(k) + o.a, *const r = row(0) + o.result, order = Real(static_cast<double>(k));
+  // r' = slope a' / u, of order k: what is left of a_k when the products of known coefficients are taken away.
+  const auto by_slope = [&](Register slope, const Real& sign) {
+    const Real* const u = row(0) + slope;
+    set_by_sum<true>(o, k, o.result, slope, 1, k - 1,
+                     [&](std::uint32_t i, const Real& sum) { return (sign * a[i] - sum / order) / u[i]; });
+  };
+  switch (o.code) {
+    case SeriesCode::square_root:  // r r = a; that of 0 is 0 as long as a is
+      return set_by_sum<false>(o, k, o.result, o.result, 1, k - 1, [&](std::uint32_t i, const Real& sum) {
+        return r[i] == Real(0) && a[i] == Real(0) && sum == Real(0) ? Real(0) : (a[i] - sum) / (2 * r[i]);
+      });
+    case SeriesCode::exponential:
+      return set_by_sum<true>(o, k, o.a, o.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
+    case SeriesCode::logarithm:
+      return by_slope(o.a, Real(1));
+    case SeriesCode::arc_tangent:
+    case SeriesCode::arc_sine:
+      return by_slope(o.b, Real(1));
+    case SeriesCode::arc_cosine:
+      return by_slope(o.b, Real(-1));
+    case SeriesCode::power:
+      return power(o, k);
+    case SeriesCode::sine_cosine:
+      return pair(o, k, Real(-1));
+    case SeriesCode::hyperbolic_sine_cosine:
+      return pair(o, k, Real(1));
+    case SeriesCode::tangent:
+      return with_square(o, k, Real(1));
+    case SeriesCode::hyperbolic_tangent:
+      return with_square(o, k, Real(-1));
+    default: {  // of y and x with c = x^2 + y^2: c r' = x y' - y x'
+      const Real* const c = row(0) + o.c;
+      return set_each(o, k, [&](std::uint32_t i) {
+        const Real rise = sum<true>(k, o.a + i, o.b + i, 1, k) - sum<true>(k, o.b + i, o.a + i, 1, k);
+        return (rise - sum<true>(k, o.result + i, o.c + i, 1, k - 1)) / (order * c[i]);
+      });
+    }
+  }
+}
+
+/// Two functions whose slopes are the second one and sign times the first one.
+template <class Real>
+void SeriesProgram<Real>::pair(const Operation& o, std::size_t k, const Real& sign) {
+  const Real order = Real(static_cast<double>(k));
+  Operation second = o;
+  second.result = o.result + o.count;
+  set_by_sum<true>(o, k, o.a, second.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
+  set_by_sum<true>(second, k, o.a, o.result, 1, k, [&](std::uint32_t, const Real& sum) { return sign * sum / order; });
+}
+
+/// r' = u a' with u = 1 + sign r^2.
+template <class Real>
+void SeriesProgram<Real>::with_square(const Operation& o, std::size_t k, const Real& sign) {
+  const Real order = Real(static_cast<double>(k));
+  Operation second = o;
+  second.result = o.result + o.count;
+  set_by_sum<true>(o, k, o.a, second.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
+  set_by_sum<false>(second, k, o.result, o.result, 0, k, [&](std::uint32_t, const Real& sum) { return sign * sum; });
+}
+
+template <class Real>
+void SeriesProgram<Real>::power(const Operation& o, std::size_t k) {
+  set_each(o, k, [&](std::uint32_t i) { return power_of(k, o.a + i, o.result + i, row(0)[o.b + i]); });
+}
+
+/// a r' = p r a'. Where a begins with a power s^m, r begins with s^(p m), and the recurrence is that of a / s^m.
+template <class Real>
+Real SeriesProgram<Real>::power_of(std::size_t k, Register a, Register result, const Real& p) {
+  using std::pow;
+  std::size_t m = 0;
+  while (m <= k && row(m)[a] == Real(0)) ++m;
+  if (m > k) return Real(0) * p;  // 0, or not a number where p is none
+  const Real shift = p * Real(static_cast<double>(m));
+  if (shift > Real(static_cast<double>(k))) return Real(0);
+  std::size_t first = 0;
+  while (Real(static_cast<double>(first)) < shift) ++first;
+  if (Real(static_cast<double>(first)) != shift) return std::numeric_limits<double>::quiet_NaN();
+  const Real leading = row(m)[a];
+  if (k == first) return pow(leading, p);
+  const std::size_t n = k - first;
+  Real total(0);
+  for (std::size_t j = 1; j <= n && m + j <= k; ++j) {
+    const Real weight = p * Real(static_cast<double>(j)) - Real(static_cast<double>(n - j));
+    total += weight * (row(m + j)[a] * row(k - j)[result]);
+  }
+  return total / (Real(static_cast<double>(n)) * leading);
+}
+
+/// What is one of its operands, or one up to its sign.
+template <class Real>
+void SeriesProgram<Real>::choose(const Operation& o, std::size_t k) {
+  // The sign of the first coefficient of u - v that is not 0.
+  const auto sign_of = [&](Register u, Register v, bool alone) {
+    for (std::size_t j = 0; j <= k; ++j) {
+      const Real difference = alone ? row(j)[u] : Real(row(j)[u] - row(j)[v]);
+      if (difference != Real(0)) return difference < Real(0) ? -1 : 1;
+    }
+    return 0;
+  };
+  const Real* const here = row(k);
+  switch (o.code) {
+    case SeriesCode::minimum:
+      return set_each(o, k,
+                      [&](std::uint32_t i) { return here[sign_of(o.b + i, o.a + i, false) < 0 ? o.b + i : o.a + i]; });
+    case SeriesCode::maximum:
+      return set_each(o, k,
+                      [&](std::uint32_t i) { return here[sign_of(o.b + i, o.a + i, false) > 0 ? o.b + i : o.a + i]; });
+    case SeriesCode::absolute:
+      return set_each(o, k,
+                      [&](std::uint32_t i) { return sign_of(o.a + i, 0, true) < 0 ? -here[o.a + i] : here[o.a + i]; });
+    case SeriesCode::select:
+      return set_each(o, k, [&](std::uint32_t i) { return here[(row(0)[o.a + i] != Real(0) ? o.b : o.c) + i]; });
+    default:
+      table(o, k);
+  }
+}
+
+/// The piece is that which a enters: on a corner the one before it where a falls.
+template <class Real>
+void SeriesProgram<Real>::table(const Operation& o, std::size_t k) {
+  const Pieces& pieces = tables_[o.b];
+  Real* const slopes = row(0) + o.result + o.count;
+  for (std::uint32_t i = 0; i < o.count; ++i) {
+    const Real at = row(0)[o.a + i];
+    const LinearPiece<Real> piece = pieces(at);
+    Real& result = row(k)[o.result + i];
+    if (k == 0) {
+      slopes[i] = piece.slope;
+      result = piece.value + piece.slope * (at - piece.from);
+      continue;
+    }
+    bool is_first = true;  // coefficient after that of order 0
+    for (std::size_t j = 1; j < k && is_first; ++j) is_first = row(j)[o.a + i] == Real(0);
+    if (is_first && at == piece.from && row(k)[o.a + i] < Real(0)) {
+      using std::nextafter;
+      slopes[i] = pieces(nextafter(at, -std::numeric_limits<Real>::infinity())).slope;
+    }
+    result = slopes[i] * row(k)[o.a + i];
+  }
+}
+
+/// Functions that are constant between their jumps.
+template <class Real>
+void SeriesProgram<Real>::step_functions(const Operation& o) {
+  using std::ceil, std::floor;
+  const Real *const a = row(0) + o.a, *const b = row(0) + o.b;
+  const auto truth = [](bool holds) { return holds ? Real(1) : Real(0); };
+  switch (o.code) {
+    case SeriesCode::table_slope:
+      return set_each(o, 0, [&](std::uint32_t i) { return tables_[o.b](a[i]).slope; });
+    case SeriesCode::sign:
+      return set_each(o, 0, [&](std::uint32_t i) {
+        return a[i] > Real(0) ? Real(1) : a[i] < Real(0) ? Real(-1) : a[i];
+      });
+    case SeriesCode::floor:
+      return set_each(o, 0, [&](std::uint32_t i) { return floor(a[i]); });
+    case SeriesCode::ceiling:
+      return set_each(o, 0, [&](std::uint32_t i) { return ceil(a[i]); });
+    case SeriesCode::less:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] < b[i]); });
+    case SeriesCode::less_equal:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] <= b[i]); });
+    case SeriesCode::equal:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] == b[i]); });
+    case SeriesCode::not_equal:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] != b[i]); });
+    case SeriesCode::logical_and:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] != Real(0) && b[i] != Real(0)); });
+    case SeriesCode::logical_or:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] != Real(0) || b[i] != Real(0)); });
+    default:
+      return set_each(o, 0, [&](std::uint32_t i) { return truth(a[i] == Real(0)); });
+  }
+}
+
+/// The coefficients of the solution of x' = f(t, x), from those of order 0 in c[0] on: c[k] of x(t + scale s). Of the
+/// program's registers the first is the time and the next are the components of x; `derivatives` are those of f.
+template <class Real, class X>
+void expand_solution(SeriesProgram<Real>& program, std::span<const std::uint32_t> derivatives, const Real& t,
+                     const Real& scale, std::span<X> c) {
+  const std::size_t order = c.size() - 1, n = derivatives.size();
+  program.begin(order);
+  program.coefficient(0, 0) = t;
+  if (order > 0) program.coefficient(1, 0) = scale;
+  for (std::size_t k = 0; k < order; ++k) {
+    for (std::uint32_t i = 0; i < n; ++i) program.coefficient(k, i + 1) = c[k].data()[i];
+    program.evaluate(k);
+    const Real factor = scale / Real(static_cast<double>(k + 1));
+    for (std::size_t i = 0; i < n; ++i) c[k + 1].data()[i] = factor * program.coefficient(k, derivatives[i]);
+  }
+}
+
+}  // namespace continuo

@@ -1,0 +1,375 @@
+// The method of Taylor series: the solution from t on is x(t + s) = c_0 + c_1 s + ... + c_p s^p, with coefficients by
+// recurrences of the operations that f is made of (series_program.hpp). The order p follows from the tolerance and the
+// step from the last two coefficients: A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by
+// means of high-order Taylor methods", Experimental Mathematics 14 (2005),
+//
+//   p = ceil(1 - ln(tolerance)/2),   h = exp(-0.7/(p - 1)) min over j = p - 1, p of (e^(2 (p - 1 - j)) / |c_j|)^(1/j),
+//
+// |c_j| in tolerances. A series of radius of convergence r has c_j ~ r^-j; then h is r/e^2, and what is cut off is the
+// tolerance times e^-4. The coefficients at the end of a step, which the next one begins with, are computed at once:
+// they give the size of the next step, and c_1 there is f, by which the defect of the polynomial at its end is known.
+// Where f may have jumps or corners, or depends on time, the defect is measured within the step as well.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/methods/support/tolerance_proportionality.hpp>
+#include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/methods/taylor_series/series_number.hpp>
+#include <continuo/numerics/finite.hpp>
+#include <continuo/system/rebound_state.hpp>
+
+namespace continuo {
+
+/// The system gives the series of its solution itself: c[k] becomes the coefficient of s^k of x(t + scale s), c[0]
+/// being there. Returns why it has none, a sentence; empty where it has.
+template <class F, class X>
+concept HasTaylorCoefficients = requires(F& f, const Scalar<X>& t, const Scalar<X>& scale, std::span<X> c) {
+  { f.taylor_coefficients(t, scale, c) } -> std::convertible_to<std::string_view>;
+};
+/// The system says whether it has jumps or corners between the events of a run.
+template <class F>
+concept KnowsItsCorners = requires(const F& f) {
+  { f.has_corners() } -> std::convertible_to<bool>;
+};
+
+namespace detail {
+
+/// Whether f can be called with numbers that write down how they were computed.
+template <class F, class X>
+[[nodiscard]] consteval bool takes_series() {
+  if constexpr (HasTaylorCoefficients<F, X>) {
+    return true;
+  } else {
+    using Series = SeriesNumber<Scalar<X>>;
+    return RightHandSide<F, ReboundState<X, Series>>;
+  }
+}
+
+}  // namespace detail
+
+/// For smooth problems that are not stiff, and strict tolerances. For models, and for systems in C++ that take any
+/// number type: [](auto t, const auto& x, auto& dxdt) { ... }. Steps of a fixed size have order 8.
+struct TaylorSeries {
+  static constexpr std::string_view name = "taylor";
+  static constexpr int order = 17, error_order = 16, starting_order = 8, dense_degree = 17, dense_order = 17;
+  static constexpr int order_of_fixed_steps = 8;
+  static constexpr bool second_order = false;
+  /// No coefficients can be had of every system.
+  static constexpr bool needs_series = true;
+
+  /// The series at one instant, in units of a time `scale`.
+  template <State X>
+  struct Expansion {
+    std::array<X, dense_degree + 1> c;
+    Scalar<X> scale{};
+    bool is_known = false;
+
+    explicit Expansion(const X& x) { c.fill(x); }
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(c, scale, is_known);
+    }
+  };
+
+  template <State X>
+  struct Workspace {
+    using Real = Scalar<X>;
+    Expansion<X> now, next;  // at the start of the step, and at its end
+    X rest, next_rest;       // what rounding has taken from x, and will have taken from x_new
+    X defect, point, slope;  // f less the slope of the polynomial, times h/(p + 1); scratch
+    Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
+    std::size_t order = 0;        // p; 0: not chosen
+    bool is_retaken = false;      // the step begins where the last try did
+    bool is_controlled = false;   // somebody asked for the size of the next step
+    bool is_fixed = false;        // nobody has
+    std::string_view failure{};   // why there is no series
+    SeriesProgram<Real> program;  // of f where it is recorded
+    using Number = SeriesNumber<Real>;
+    ReboundState<X, Number> recorded_x, recorded_f;
+    std::vector<std::uint32_t> derivatives;  // their registers
+
+    explicit Workspace(const X& x)
+        : now(x), next(x), rest(x), next_rest(x), defect(x), point(x), slope(x), derivatives(dimension(x)) {
+      if constexpr (requires { recorded_x.resize(dimension(x)); }) {
+        recorded_x.resize(dimension(x));
+        recorded_f.resize(dimension(x));
+      }
+    }
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(now, next, rest, next_rest, slope);
+      archive.index(order, dense_degree);
+      archive(is_controlled, is_fixed);
+    }
+  };
+
+  template <State X>
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
+    return Workspace<X>(x);
+  }
+
+  template <class System, State X>
+  [[nodiscard]] static std::string_view unsupported_reason(const System&, const X&) {
+    if constexpr (detail::takes_series<System, X>()) return {};
+    return "needs a system that takes any number type, [](auto t, const auto& x, auto& dxdt) { ... }, or has the "
+           "member "
+           "taylor_coefficients: take dop853";
+  }
+
+  template <State X>
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+    work.tolerance = tolerance;
+  }
+
+  template <State X>
+  [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
+    return static_cast<int>(std::max<std::size_t>(work.order, 3)) - 1;
+  }
+
+  template <class System, State X>
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
+                  Workspace<X>& work, X& x_new) {
+    using Real = Scalar<X>;
+    int evaluations = 0;
+    const bool is_retaken = std::exchange(work.is_retaken, false);
+    if (discontinuity && !is_retaken) {
+      work.now.is_known = work.is_fixed = work.is_controlled = false;
+      std::fill_n(work.rest.data(), dimension(x), Real(0));
+    }
+    work.next.is_known = false;
+    if (!work.now.is_known) {
+      work.order = order_of_step(work);
+      work.now.c[0] = x;
+      evaluations += expand(system, t, h, work, work.now);
+    }
+    if (!work.failure.empty()) return evaluations;
+    advance(x, h, work, x_new);
+    if (is_retaken) return evaluations;
+    std::fill_n(work.defect.data(), dimension(x), Real(0));
+    if (!detail::is_finite_state(x_new)) return evaluations;
+    work.next.c[0] = x_new;
+    evaluations += expand(system, Real(t + h), h, work, work.next);
+    if (!work.failure.empty()) return evaluations;
+    for (std::size_t i = 0; i < dimension(x); ++i) work.slope.data()[i] = work.next.c[1].data()[i] / work.next.scale;
+    note_defect(Real(1), h, work);
+    if (may_have_corners<X>(system)) {
+      for (const double theta : within) {
+        at(Real(theta), h, work, work.point);
+        evaluate(system, Real(t + Real(theta) * h), work.point, work.slope);
+        note_defect(Real(theta), h, work);
+        ++evaluations;
+      }
+    }
+    return evaluations;
+  }
+
+  template <State X>
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
+    return detail::zero_if_all_finite(x_new) + root_mean_square<Scalar<X>>(dimension(x), [&](std::size_t i) {
+             return Scalar<X>(error_of(work, h, i) / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]));
+           });
+  }
+  /// The greatest of the last two terms, of the last but one in units of e^2 tolerances, and of the defect.
+  template <State X>
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+    using std::abs, std::pow;
+    using Real = Scalar<X>;
+    const Real theta = h / work.now.scale;
+    Real greatest = abs(work.defect.data()[i]);
+    for (std::size_t j = work.order - 1; j <= work.order; ++j) {
+      const Real term = abs(work.now.c[j].data()[i]) * abs(power(theta, j)) * allowance<Real>(work.order, j);
+      greatest = detail::greater(greatest, term);
+    }
+    return greatest;
+  }
+
+  /// The next step by the coefficients it begins with.
+  template <State X>
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X&,
+                                             const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
+    using Real = Scalar<X>;
+    using std::abs, std::exp, std::min, std::pow;
+    work.is_controlled = true;
+    if (!work.next.is_known) return factor;
+    Real longest = Real(greatest_factor) * abs(h);
+    for (std::size_t j = work.order - 1; j <= work.order; ++j) {
+      const Real norm = allowance<Real>(work.order, j) * weighted_norm(work.next.c[j], x_new, x_new, tolerance);
+      if (norm > Real(0)) longest = min(longest, Real(abs(work.next.scale) * pow(norm, -Real(1) / number<Real>(j))));
+    }
+    return longest / abs(h) * exp(Real(-0.7) / number<Real>(work.order - 1));
+  }
+
+  template <class System, State X>
+  static int interpolate(System&, const Scalar<X>&, const X&, const Scalar<X>& h, const X& x_new, Workspace<X>& work,
+                         Interpolant<X, dense_degree>& interpolant) {
+    using Real = Scalar<X>;
+    const Real theta = h / work.now.scale;
+    Real factor(1);
+    for (std::size_t k = 0; k < interpolant.c.size(); ++k, factor *= theta) {
+      for (std::size_t i = 0; i < dimension(x_new); ++i)
+        interpolant.c[k].data()[i] = k <= work.order ? Real(factor * work.now.c[k].data()[i]) : Real(0);
+    }
+    return 0;
+  }
+
+  template <State X>
+  static void accept(Workspace<X>& work) {
+    if (!std::exchange(work.is_controlled, false)) {
+      work.is_fixed = true;
+      work.next.is_known = work.next.is_known && work.order == order_of_step(work);
+    }
+    std::swap(work.now, work.next);
+    std::swap(work.rest, work.next_rest);
+    work.next.is_known = false;
+    for (std::size_t i = 0; i < dimension(work.slope); ++i)
+      work.slope.data()[i] = work.now.c[1].data()[i] / work.now.scale;
+  }
+  /// The next step begins elsewhere.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.now.is_known = false;
+    std::fill_n(work.rest.data(), dimension(work.rest), Scalar<X>(0));
+  }
+  template <State X>
+  static void retaken(Workspace<X>& work) {
+    work.is_retaken = work.now.is_known;
+  }
+  template <State X>
+  [[nodiscard]] static StepStatus status(const Workspace<X>& work) {
+    return work.failure.empty() ? StepStatus::done : StepStatus::newton_diverged;
+  }
+  template <State X>
+  [[nodiscard]] static std::string_view failure(const Workspace<X>& work) {
+    return work.failure;
+  }
+  template <State X>
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
+    return work.slope;
+  }
+
+ private:
+  static constexpr std::size_t least_order = 4;
+  static constexpr double greatest_factor = 10;          // of one step to the next
+  static constexpr std::array within{0.27, 0.52, 0.77};  // where defects are measured in a step
+
+  template <class Real>
+  [[nodiscard]] static Real number(std::size_t k) {
+    return Real(static_cast<double>(k));
+  }
+  template <class Real>
+  [[nodiscard]] static Real power(const Real& x, std::size_t n) {
+    Real result(1);
+    for (std::size_t k = 0; k < n; ++k) result *= x;
+    return result;
+  }
+  /// In what units of a tolerance term j is measured: the last one is to be e^-2 tolerances, that before it 1.
+  template <class Real>
+  [[nodiscard]] static Real allowance(std::size_t order, std::size_t j) {
+    return j == order ? Real(7.38905609893065) : Real(1);
+  }
+
+  template <State X>
+  [[nodiscard]] static std::size_t order_of_step(const Workspace<X>& work) {
+    using std::ceil, std::log;
+    if (work.is_fixed) return order_of_fixed_steps;
+    const Tolerance<Scalar<X>>& tolerance = work.tolerance;
+    const Scalar<X> relative = tolerance.rtol_each
+                                   ? *std::min_element(tolerance.rtol_each, tolerance.rtol_each + dimension(work.rest))
+                                   : tolerance.rtol;
+    const double asked = static_cast<double>(relative > Scalar<X>(0) ? relative : tolerance_as_number(tolerance));
+    const double wanted = std::ceil(1 - 0.5 * std::log(std::max(asked, 1e-16)));
+    const auto p = static_cast<std::size_t>(std::max(wanted, static_cast<double>(least_order)));
+    return std::min<std::size_t>(p, dense_degree);
+  }
+
+  template <State X, class System>
+  [[nodiscard]] static bool may_have_corners(const System& system) {
+    if constexpr (KnowsItsCorners<System>) return system.has_corners();
+    return true;
+  }
+
+  /// The coefficients from c[0] on.
+  template <class System, State X>
+  static int expand(System& system, const Scalar<X>& t, const Scalar<X>& scale, Workspace<X>& work,
+                    Expansion<X>& expansion) {
+    expansion.scale = scale;
+    expansion.is_known = true;
+    if constexpr (HasTaylorCoefficients<System, X>) {
+      work.failure = system.taylor_coefficients(t, scale, std::span<X>(expansion.c).first(work.order + 1));
+      expansion.is_known = work.failure.empty();
+    } else if constexpr (detail::takes_series<System, X>()) {
+      record(system, t, work, expansion.c[0]);
+      expand_solution<Scalar<X>, X>(work.program, work.derivatives, t, scale,
+                                    std::span<X>(expansion.c).first(work.order + 1));
+    } else {
+      work.failure = unsupported_reason(system, expansion.c[0]);
+      expansion.is_known = false;
+    }
+    return static_cast<int>(work.order);
+  }
+
+  /// The operations of f at (t, x): one evaluation. Register 0 is the time, then come the components.
+  template <class System, State X>
+  static void record(System& system, const Scalar<X>& t, Workspace<X>& work, const X& x) {
+    using Number = SeriesNumber<Scalar<X>>;
+    work.program.clear();
+    const Number time(work.program, work.program.add_variable(), t);
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      work.recorded_x[i] = Number(work.program, work.program.add_variable(), x.data()[i]);
+    evaluate(system, time, work.recorded_x, work.recorded_f);
+    for (std::size_t i = 0; i < dimension(x); ++i) work.derivatives[i] = work.recorded_f[i].place_in(work.program);
+  }
+
+  /// The polynomial at a part of the step.
+  template <State X>
+  static void at(const Scalar<X>& part, const Scalar<X>& h, const Workspace<X>& work, X& x) {
+    using Real = Scalar<X>;
+    const Real theta = part * h / work.now.scale;
+    x = work.now.c[work.order];
+    for (std::size_t k = work.order; k-- > 0;)
+      for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = x.data()[i] * theta + work.now.c[k].data()[i];
+  }
+
+  /// x_new, with what rounding has taken from x, and takes now.
+  template <State X>
+  static void advance(const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
+    using Real = Scalar<X>;
+    const Real theta = h / work.now.scale;
+    for (std::size_t i = 0; i < dimension(x); ++i) {
+      Real change(0);
+      for (std::size_t k = work.order; k > 0; --k) change = (change + work.now.c[k].data()[i]) * theta;
+      change += work.rest.data()[i];
+      x_new.data()[i] = x.data()[i] + change;
+      work.next_rest.data()[i] = (x.data()[i] - x_new.data()[i]) + change;
+    }
+  }
+
+  /// The error that the defect at a part of the step stands for, where it is greater than one before: a polynomial of
+  /// order p whose first term missing is c s^(p + 1) has the defect (p + 1) c s^p.
+  template <State X>
+  static void note_defect(const Scalar<X>& part, const Scalar<X>& h, Workspace<X>& work) {
+    using std::abs;
+    using Real = Scalar<X>;
+    const Real theta = part * h / work.now.scale, factor = h / number<Real>(work.order + 1);
+    for (std::size_t i = 0; i < dimension(work.slope); ++i) {
+      Real slope(0);
+      for (std::size_t k = work.order; k > 0; --k) slope = slope * theta + number<Real>(k) * work.now.c[k].data()[i];
+      const Real error = factor * (work.slope.data()[i] - slope / work.now.scale);
+      work.defect.data()[i] = detail::greater(Real(abs(error)), work.defect.data()[i]);
+    }
+  }
+};
+
+}  // namespace continuo
