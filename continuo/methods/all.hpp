@@ -48,6 +48,7 @@
 #include <continuo/methods/symplectic/symplectic_euler_position_first.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
 #include <continuo/methods/symplectic/yoshida6.hpp>
+#include <continuo/methods/taylor_series/taylor_series.hpp>
 
 namespace continuo {
 
@@ -65,7 +66,7 @@ using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bd
                                 Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, Seulex>;
 /// All methods, in the order of the catalogue.
 using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
-                                           std::tuple<Adams, Odex>{}, StiffMethods{}, AutomaticMethods{}));
+                                           std::tuple<Adams, Odex, TaylorSeries>{}, StiffMethods{}, AutomaticMethods{}));
 
 /// Calls visit.template operator()<M>() for every method M of the list.
 template <class Methods = AllMethods, class Visit>

@@ -18,11 +18,12 @@ const std::vector<MethodInfo>& method_catalogue() {
     std::vector<MethodInfo> list;
     for_each_method([&]<class M>() {
       list.push_back({M::name, M::order, detail::order_of_fixed_steps<M>(), M::error_order, M::dense_order,
-                      M::second_order, detail::is_implicit<M>(), detail::is_automatic<M>()});
-    });
-    return list;
-  }();
-  return all;
+                      M::second_order, detail::is_implicit<M>(), detail::is_automatic<M>(), requires { M::needs_series; }});
+});
+return list;
+}
+();
+return all;
 }
 
 const MethodInfo* find_method(std::string_view name) {

@@ -17,6 +17,7 @@ struct MethodInfo {
   bool second_order;         // only for x'' = a(t, x)
   bool implicit;             // solves equations in each step: for stiff systems and algebraic equations
   bool automatic;            // switches between an explicit and a stiff method
+  bool needs_series;         // only for systems of which the Taylor series is known: models, and f of any number type
 };
 
 /// Other names of a method: `euler` for explicit_euler, `crank_nicolson` for trapezoidal.

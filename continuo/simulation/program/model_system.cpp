@@ -39,6 +39,7 @@ void ModelSystem::set(std::uint32_t variable, double value) {
   variables_[variable] = value;
   if (derivatives_of_f_) derivatives_of_f_->set(variable, value);
   if (switched_) switched_->set(variable, value);
+  if (series_) series_->set(variable, value);
   for_each([&](Evaluation& evaluation) { evaluation.set(variable, value); });
 }
 
@@ -71,6 +72,7 @@ void ModelSystem::hold_switches(double t, const X& x) {
   if (!any) return;
   switched_.emplace(*program_, variables_);
   derivatives_of_f_.reset();
+  series_.reset();
   settle_switches(t, x, nullptr);
 }
 
@@ -159,6 +161,20 @@ void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
   (*this)(t, x, now);
   (*this)(t + increment, x, dfdt);
   for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / increment;
+}
+
+std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::span<X> c) {
+  if (slides())
+    return "the motion slides along a surface where the equations jump, and has no Taylor series there: take dop853";
+  if (!series_ || series_mode_ != mode_) {
+    series_.emplace(*program_, equations(), variables_);
+    series_mode_ = mode_;
+  }
+  const std::span<const double> values = switch_values();
+  for (std::size_t k = 0; k < values.size(); ++k)
+    series_->set(program_->switches[mode_].switches[k].variable, values[k]);
+  series_->expand(t, scale, c, held_);
+  return {};
 }
 
 }  // namespace continuo::model

@@ -17,6 +17,7 @@
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/simulation/program/model_derivatives.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/program/solution_series.hpp>
 #include <continuo/simulation/program/switched_motion.hpp>
 #include <continuo/system/system.hpp>
 
@@ -112,6 +113,11 @@ class ModelSystem {
   void jacobian_values(double t, const X& x, std::span<double> values);
   void jacobian_band(double t, const X& x, std::span<double> band);
   void time_derivative(double t, const X& x, X& dfdt);
+  /// The series of the solution, x(t + scale s), from c[0] on; see HasTaylorCoefficients. The first call compiles.
+  [[nodiscard]] std::string_view taylor_coefficients(double t, double scale, std::span<X> c);
+  /// Whether a series may not show what comes within a step: the equations depend on time, or they have jumps or
+  /// corners that are not switches.
+  [[nodiscard]] bool has_corners() const { return !autonomous || (series_ && series_->has_corners()); }
   [[nodiscard]] bool has_mass() const { return model().needs_dae_solver(); }
   [[nodiscard]] double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }
   [[nodiscard]] bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
@@ -128,6 +134,8 @@ class ModelSystem {
   std::vector<double> variables_;  // parameters and inputs as they are now
   std::optional<ModelDerivatives> derivatives_of_f_;
   std::optional<SwitchedMotion> switched_;
+  std::optional<SolutionSeries> series_;  // of the mode `series_mode_`
+  std::size_t series_mode_ = 0;
   std::vector<Evaluation> derivatives_, guards_, truths_, event_blocks_, limit_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
   std::vector<std::size_t> held_;

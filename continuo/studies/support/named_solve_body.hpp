@@ -22,6 +22,11 @@ template <class Real>
     solution.outcome.hint = std::string(method) + " needs x'' = a(t, x): pairs of a position and its velocity";
     return solution;
   }
+  if (info != nullptr && info->needs_series) {
+    solution.outcome.hint =
+        std::string(method) + " needs the Taylor series of the equations, which is not known here: take dop853";
+    return solution;
+  }
   with_method(method, [&](auto chosen) {
     const auto any = any_method<decltype(chosen), NamedSystem<Real>, std::vector<Real>>();
     solution = solve(system, std::move(x0), interval, any, options);

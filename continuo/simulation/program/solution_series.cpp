@@ -1,0 +1,440 @@
+// Compiles a model's derivatives to operations on Taylor series.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include <continuo/methods/taylor_series/series_program.hpp>
+#include <continuo/simulation/program/solution_series.hpp>
+
+namespace continuo::model {
+
+using Register = std::uint32_t;
+
+/// What copies of a program share.
+struct SeriesEquations {
+  Graph graph;
+  std::vector<NodeId> derivatives;
+  std::vector<Table> tables;
+  std::vector<NodeId> exponents;  // on whose values the program depends
+};
+
+struct SolutionSeries::Program {
+  /// A number of the program: the value of an expression that does not move, or one that the compiler needs.
+  struct Number {
+    NodeId node;
+    double value = 0;
+  };
+  [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes) const;
+  void renew();
+
+  std::shared_ptr<const SeriesEquations> equations;
+  std::uint32_t states_begin, states_end;
+  std::vector<double> variables;
+  bool is_stale = true;  // a number has changed
+
+  SeriesProgram<double> series{};
+  std::vector<Register> derivatives{};  // their registers
+  Register zero = 0;                    // that of a 0
+  std::vector<Number> numbers{};
+  std::vector<double> exponents{};  // as they are now
+};
+
+/// Writes the series of a Program, level by level: the operands of an operation are on levels below its own.
+class SeriesCompiler {
+ public:
+  SeriesCompiler(SolutionSeries::Program& program, std::span<const double> exponents)
+      : s_(program),
+        graph_(program.equations->graph),
+        program_(program.series),
+        exponents_(exponents),
+        nodes_(reachable(graph_, program.equations->derivatives)),
+        level_(graph_.size(), 0),
+        place_(graph_.size(), nowhere) {}
+
+  void compile() {
+    program_.clear();
+    s_.numbers.clear();
+    const Register time = program_.add_variable(), states = program_.add_variable(s_.states_end - s_.states_begin);
+    std::map<std::size_t, std::vector<NodeId>> by_level;
+    for (const NodeId id : nodes_) {
+      const Node& node = graph_[id];
+      if (node.op == Op::variable && node.number == Layout::time) {
+        set_moving(id, 1, time);
+      } else if (node.op == Op::variable && is_state(node.number)) {
+        set_moving(id, 1, states + node.number - s_.states_begin);
+      } else if (const std::size_t below = level_of_arguments(node); below > 0) {
+        level_[id.index] = below + 1;
+        by_level[below + 1].push_back(id);
+      }
+    }
+    for (const auto& [level, nodes] : by_level) write_level(nodes);
+    s_.derivatives.clear();
+    for (const NodeId id : s_.equations->derivatives) s_.derivatives.push_back(place_of(id));
+    count_ = 1;
+    s_.zero = numbers(0);
+  }
+
+ private:
+  using Nodes = std::vector<NodeId>;
+  /// Nodes with the same kind are written alike: operation, which arguments move, table or exponent.
+  using Kind = std::tuple<Op, std::array<bool, 3>, bool, std::uint32_t, double>;
+
+  static constexpr Register nowhere = std::numeric_limits<Register>::max();
+  static constexpr std::size_t least_together = 4;
+
+  bool is_state(std::uint32_t variable) const { return variable >= s_.states_begin && variable < s_.states_end; }
+  bool moves(NodeId id) const { return level_[id.index] > 0; }
+  void set_moving(NodeId id, std::size_t level, Register place) {
+    level_[id.index] = level;
+    place_[id.index] = place;
+  }
+  std::size_t level_of_arguments(const Node& node) const {
+    std::size_t level = 0;
+    for (const NodeId argument : arguments(node)) level = std::max(level, level_[argument.index]);
+    return level;
+  }
+
+  /// What does not move gets its register, of a number, when it is first read.
+  Register place_of(NodeId id) {
+    if (place_[id.index] == nowhere) {
+      place_[id.index] = program_.add_number(0);
+      s_.numbers.push_back({.node = id});
+    }
+    return place_[id.index];
+  }
+
+  double exponent(NodeId id) const {
+    const auto found = std::ranges::find(s_.equations->exponents, id);
+    return exponents_[static_cast<std::size_t>(found - s_.equations->exponents.begin())];
+  }
+
+  Kind kind_of(NodeId id) const {
+    const Node& node = graph_[id];
+    std::array<bool, 3> moving{};
+    std::size_t k = 0;
+    for (const NodeId argument : arguments(node)) moving[k++] = moves(argument);
+    const bool is_square = node.op == Op::multiply && node.a == node.b;
+    const bool is_table = node.op == Op::interpolate || node.op == Op::interpolate_slope;
+    const double power = node.op == Op::power && !moving[1] ? exponent(node.b) : 0;
+    return {node.op, moving, is_square, is_table ? node.number : 0, std::isnan(power) ? 0.5 : power};
+  }
+
+  void write_level(const Nodes& nodes) {
+    std::map<Kind, Nodes> kinds;
+    for (const NodeId id : nodes) kinds[kind_of(id)].push_back(id);
+    for (auto& [kind, members] : kinds) {
+      if (members.size() < least_together) {
+        for (const NodeId id : members) write({id});
+      } else {
+        std::ranges::sort(members, {}, [&](NodeId id) { return places_of(id); });
+        write(members);
+      }
+    }
+  }
+  std::array<Register, 3> places_of(NodeId id) {
+    std::array<Register, 3> places{};
+    std::size_t k = 0;
+    for (const NodeId argument : arguments(graph_[id])) places[k++] = place_of(argument);
+    return places;
+  }
+
+  /// Members of one kind, with results side by side.
+  void write(const Nodes& members) {
+    std::array<std::vector<Register>, 3> lists;
+    const std::size_t count = arity(graph_[members.front()].op);
+    for (const NodeId id : members) {
+      const std::array<Register, 3> places = places_of(id);
+      for (std::size_t k = 0; k < count; ++k) lists[k].push_back(places[k]);
+    }
+    count_ = static_cast<std::uint32_t>(members.size());
+    std::array<Register, 3> operands{};
+    for (std::size_t k = 0; k < count; ++k) operands[k] = side_by_side(lists[k]);
+    Register result = operation(members.front(), operands);
+    for (const NodeId id : members) place_[id.index] = result++;
+  }
+
+  /// Where these lie side by side, or are copied to.
+  Register side_by_side(const std::vector<Register>& places) {
+    bool is_straight = true;
+    for (std::size_t k = 1; k < places.size(); ++k) is_straight = is_straight && places[k] == places[k - 1] + 1;
+    if (is_straight) return places.front();
+    const auto [found, is_new] = copies_.try_emplace(places, 0);
+    if (is_new) found->second = program_.add_copies(places);
+    return found->second;
+  }
+
+  Register add(SeriesCode code, Register a, Register b = 0, Register c = 0) {
+    return program_.add(code, a, b, c, count_);
+  }
+  /// This number for each member.
+  Register numbers(double value) {
+    const auto [found, is_new] = numbers_.try_emplace(value, 0);
+    if (is_new) {
+      found->second = program_.add_number(value);
+      s_.numbers.push_back({.node = {}, .value = value});
+    }
+    return side_by_side(std::vector<Register>(count_, found->second));
+  }
+
+  Register operation(NodeId id, const std::array<Register, 3>& operand) {
+    const auto [a, b, c] = operand;
+    const Node& node = graph_[id];
+    switch (node.op) {
+      case Op::add:
+        return add(SeriesCode::add, a, b);
+      case Op::subtract:
+        return add(SeriesCode::subtract, a, b);
+      case Op::negate:
+        return add(SeriesCode::negate, a);
+      case Op::multiply:
+        if (!moves(node.a)) return add(SeriesCode::scale, a, b);
+        if (!moves(node.b)) return add(SeriesCode::scale, b, a);
+        return node.a == node.b ? add(SeriesCode::square, a) : add(SeriesCode::product, a, b);
+      case Op::divide:
+        return add(moves(node.b) ? SeriesCode::quotient : SeriesCode::divide_by_number, a, b);
+      case Op::power:
+        return moves(node.b) ? add(SeriesCode::exponential, add(SeriesCode::product, b, add(SeriesCode::logarithm, a)))
+                             : power(a, b, exponent(node.b));
+      case Op::smooth:
+        return a;
+      case Op::interpolate:
+      case Op::interpolate_slope:
+        return add(node.op == Op::interpolate ? SeriesCode::table : SeriesCode::table_slope, a, table(node.number));
+      default:
+        return function(node.op, a, b, c);
+    }
+  }
+
+  Register function(Op op, Register a, Register b, Register c) {
+    switch (op) {
+      case Op::sine:
+        return pair(SeriesCode::sine_cosine, a);
+      case Op::cosine:
+        return pair(SeriesCode::sine_cosine, a) + count_;
+      case Op::hyperbolic_sine:
+        return pair(SeriesCode::hyperbolic_sine_cosine, a);
+      case Op::hyperbolic_cosine:
+        return pair(SeriesCode::hyperbolic_sine_cosine, a) + count_;
+      case Op::tangent:
+        return add(SeriesCode::tangent, a);
+      case Op::hyperbolic_tangent:
+        return add(SeriesCode::hyperbolic_tangent, a);
+      case Op::arc_tangent:
+        return add(SeriesCode::arc_tangent, a, add(SeriesCode::add, add(SeriesCode::square, a), numbers(1)));
+      case Op::arc_sine:
+        return add(SeriesCode::arc_sine, a, root_of_one_less_square(a));
+      case Op::arc_cosine:
+        return add(SeriesCode::arc_cosine, a, root_of_one_less_square(a));
+      case Op::arc_tangent2:
+        return add(SeriesCode::arc_tangent2, a, b, sum_of_squares(a, b));
+      case Op::hypotenuse:
+        return add(SeriesCode::square_root, sum_of_squares(a, b));
+      case Op::exponential:
+        return add(SeriesCode::exponential, a);
+      case Op::logarithm:
+        return add(SeriesCode::logarithm, a);
+      case Op::logarithm10:
+        return add(SeriesCode::divide_by_number, add(SeriesCode::logarithm, a), numbers(std::numbers::ln10));
+      case Op::square_root:
+        return add(SeriesCode::square_root, a);
+      case Op::modulo:
+        return add(SeriesCode::subtract, a,
+                   add(SeriesCode::product, b, add(SeriesCode::floor, add(SeriesCode::quotient, a, b))));
+      default:
+        return add(piecewise(op), a, b, c);
+    }
+  }
+
+  static SeriesCode piecewise(Op op) {
+    switch (op) {
+      case Op::minimum:
+        return SeriesCode::minimum;
+      case Op::maximum:
+        return SeriesCode::maximum;
+      case Op::absolute:
+        return SeriesCode::absolute;
+      case Op::select:
+        return SeriesCode::select;
+      case Op::sign:
+        return SeriesCode::sign;
+      case Op::floor:
+        return SeriesCode::floor;
+      case Op::ceiling:
+        return SeriesCode::ceiling;
+      case Op::less:
+        return SeriesCode::less;
+      case Op::less_equal:
+        return SeriesCode::less_equal;
+      case Op::equal:
+        return SeriesCode::equal;
+      case Op::not_equal:
+        return SeriesCode::not_equal;
+      case Op::logical_and:
+        return SeriesCode::logical_and;
+      case Op::logical_or:
+        return SeriesCode::logical_or;
+      default:
+        return SeriesCode::logical_not;
+    }
+  }
+
+  /// sin and cos of the same are one operation.
+  Register pair(SeriesCode code, Register a) {
+    const auto [found, is_new] = pairs_.try_emplace({code, a, count_}, 0);
+    if (is_new) found->second = add(code, a);
+    return found->second;
+  }
+  Register sum_of_squares(Register a, Register b) {
+    return add(SeriesCode::add, add(SeriesCode::square, a), add(SeriesCode::square, b));
+  }
+  Register root_of_one_less_square(Register a) {
+    const Register one = numbers(1);
+    const Register product = add(SeriesCode::product, add(SeriesCode::subtract, one, a), add(SeriesCode::add, one, a));
+    return add(SeriesCode::square_root, product);
+  }
+
+  /// Whole exponents are products: exact at zero, where the recurrence of powers divides by it.
+  Register power(Register a, Register b, double exponent) {
+    constexpr double greatest_product = 16;
+    const double size = std::abs(exponent);
+    if (exponent == 0 || size > greatest_product || size != std::floor(size)) return add(SeriesCode::power, a, b);
+    Register result = nowhere;
+    for (auto n = static_cast<unsigned>(size);; a = add(SeriesCode::square, a)) {
+      if (n % 2 == 1) result = result == nowhere ? a : add(SeriesCode::product, result, a);
+      if ((n >>= 1) == 0) break;
+    }
+    return exponent < 0 ? add(SeriesCode::quotient, numbers(1), result) : result;
+  }
+
+  Register table(std::uint32_t number) {
+    const auto [found, is_new] = numbers_of_tables_.try_emplace(number, 0);
+    if (is_new) {
+      found->second = program_.add_table([equations = s_.equations, number](double x) {
+        const Table::Piece& piece = equations->tables[number].at(x);
+        return LinearPiece<double>{piece.x, piece.y, piece.slope};
+      });
+    }
+    return found->second;
+  }
+
+  SolutionSeries::Program& s_;
+  const Graph& graph_;
+  SeriesProgram<double>& program_;
+  std::span<const double> exponents_;
+  Nodes nodes_;
+  std::vector<std::size_t> level_;  // by node; 0: it does not move
+  std::vector<Register> place_;     // by node
+  std::map<std::vector<Register>, Register> copies_;
+  std::map<std::tuple<SeriesCode, Register, std::uint32_t>, Register> pairs_;
+  std::map<std::uint32_t, Register> numbers_of_tables_;
+  std::map<double, Register> numbers_;
+  std::uint32_t count_ = 1;  // of the members that are written
+};
+
+namespace {
+
+/// Roots of sums of squares as powers of those sums: hypot(x, hypot(y, z))^3 = (x^2 + y^2 + z^2)^1.5 costs one
+/// recurrence where it had five.
+std::vector<NodeId> with_squares(Graph& graph, std::span<const NodeId> roots) {
+  std::map<NodeId, NodeId> image, squares;  // squares: of hypotenuses
+  const auto image_of = [&image](NodeId id) { return image.at(id); };
+  const auto square_of = [&](NodeId id) {
+    const auto known = squares.find(id);
+    return known != squares.end() ? known->second : graph.multiply(image_of(id), image_of(id));
+  };
+  for (const NodeId id : reachable(graph, roots)) {
+    const Node node = graph[id];  // a copy: the graph grows below
+    const bool is_square = node.op == Op::multiply && node.a == node.b;
+    if (node.op == Op::hypotenuse) {
+      squares[id] = graph.add(square_of(node.a), square_of(node.b));
+      image[id] = graph.apply(Op::square_root, squares[id]);
+    } else if (squares.contains(node.a) && is_square) {
+      image[id] = squares[node.a];
+    } else if (squares.contains(node.a) && node.op == Op::power) {
+      image[id] = graph.power(squares[node.a], graph.multiply(graph.constant(0.5), image_of(node.b)));
+    } else {
+      image[id] = with_arguments(graph, id, image_of);
+    }
+  }
+  std::vector<NodeId> result;
+  for (const NodeId root : roots) result.push_back(image_of(root));
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> SolutionSeries::Program::values_of(std::span<const NodeId> nodes) const {
+  return evaluate(equations->graph, nodes, variables, [this](std::uint32_t table, double x, bool slope) {
+    return slope ? equations->tables[table].slope(x) : equations->tables[table].value(x);
+  });
+}
+
+void SolutionSeries::Program::renew() {
+  std::vector<double> exponents_now = values_of(equations->exponents);
+  if (derivatives.empty() || exponents_now != exponents) SeriesCompiler(*this, exponents_now).compile();
+  exponents = std::move(exponents_now);
+  std::vector<NodeId> nodes;
+  for (const Number& number : numbers)
+    if (number.node.valid()) nodes.push_back(number.node);
+  const std::vector<double> values = values_of(nodes);
+  auto value = values.begin();
+  for (std::size_t n = 0; n < numbers.size(); ++n)
+    series.set_number(n, numbers[n].node.valid() ? *value++ : numbers[n].value);
+  is_stale = false;
+}
+
+SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives,
+                               std::span<const double> variables) {
+  auto equations = std::make_shared<SeriesEquations>();
+  equations->graph = program.model.graph;
+  equations->tables = program.tables;
+  std::vector<NodeId> nodes;
+  for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
+  equations->derivatives = with_squares(equations->graph, nodes);
+  for (const NodeId id : reachable(equations->graph, equations->derivatives))
+    if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
+  const Layout& layout = program.model.layout;
+  const auto states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
+  program_ = std::make_unique<Program>(Program{.equations = std::move(equations),
+                                               .states_begin = layout.states,
+                                               .states_end = states_end,
+                                               .variables = {variables.begin(), variables.end()}});
+  program_->variables.resize(program.tape_variables().variables);
+}
+
+SolutionSeries::SolutionSeries(const SolutionSeries& other) : program_(std::make_unique<Program>(*other.program_)) {}
+SolutionSeries::SolutionSeries(SolutionSeries&&) noexcept = default;
+SolutionSeries& SolutionSeries::operator=(const SolutionSeries& other) {
+  program_ = std::make_unique<Program>(*other.program_);
+  return *this;
+}
+SolutionSeries& SolutionSeries::operator=(SolutionSeries&&) noexcept = default;
+SolutionSeries::~SolutionSeries() = default;
+
+bool SolutionSeries::has_corners() const {
+  return program_->series.has_corners();
+}
+
+void SolutionSeries::set(std::uint32_t variable, double value) {
+  if (program_->variables[variable] == value) return;
+  program_->variables[variable] = value;
+  program_->is_stale = true;
+}
+
+void SolutionSeries::expand(double t, double scale, std::span<std::vector<double>> c,
+                            std::span<const std::size_t> held) {
+  if (program_->is_stale) program_->renew();
+  SeriesProgram<double>& series = program_->series;
+  if (held.empty()) return expand_solution<double, std::vector<double>>(series, program_->derivatives, t, scale, c);
+  std::vector<Register> derivatives = program_->derivatives;
+  for (const std::size_t i : held) derivatives[i] = program_->zero;
+  expand_solution<double, std::vector<double>>(series, derivatives, t, scale, c);
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,43 @@
+// The Taylor series of a model's solution in one mode, for the method `taylor`: the expressions of the derivatives as
+// operations on series. Equal operations on the same level, such as those of a grid's points, are one.
+//
+//   SolutionSeries series(program, program.model.modes[0].derivatives, start_values(program.model));
+//   std::vector<std::vector<double>> c(9, x);
+//   series.expand(t, 0.1, c);   // x(t + 0.1 s) = c[0] + c[1] s + ... + c[8] s^8
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <continuo/simulation/program/model_program.hpp>
+
+namespace continuo::model {
+
+/// A copy is a checkpoint.
+class SolutionSeries {
+ public:
+  /// `variables` is a whole register file as `start_values` gives it.
+  SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives, std::span<const double> variables);
+  SolutionSeries(const SolutionSeries& other);
+  SolutionSeries(SolutionSeries&&) noexcept;
+  SolutionSeries& operator=(const SolutionSeries& other);
+  SolutionSeries& operator=(SolutionSeries&&) noexcept;
+  ~SolutionSeries();
+
+  /// The coefficients after c[0], which are there; those of `held` states are 0.
+  void expand(double t, double scale, std::span<std::vector<double>> c, std::span<const std::size_t> held = {});
+  /// Whether anything in the expressions jumps or bends.
+  [[nodiscard]] bool has_corners() const;
+
+  /// A parameter, an input, or the variable of a switch.
+  void set(std::uint32_t variable, double value);
+
+ private:
+  friend class SeriesCompiler;
+  struct Program;
+  std::unique_ptr<Program> program_;
+};
+
+}  // namespace continuo::model
