@@ -186,26 +186,41 @@ class SeriesProgram {
     for (std::uint32_t i = 0; i < o.count; ++i) r[i] = each(i);
   }
 
-  /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j) a_j b_(k - j) for j from `first` to `last`,
-  /// w(j) = j or 1. A number of members at once, whose sums do not wait for each other.
-  template <bool weighted, class Finish>
+  /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j, i) a_j b_(k - j) for j from `first` to `last`.
+  /// A number of members at once; where they are no multiple of it, some again, with the same results.
+  template <class Weight, class Finish>
   [[gnu::always_inline]] void set_by_sum(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
-                                         std::size_t last, Finish&& finish) {
-    constexpr std::uint32_t at_once = 8;
-    Real* const r = row(k) + o.result;
+                                         std::size_t last, Weight&& weight, Finish&& finish) {
+    if (o.count >= 8) return set_pieces<8>(o, k, a, b, first, last, weight, finish);
+    if (o.count >= 4) return set_pieces<4>(o, k, a, b, first, last, weight, finish);
+    set_pieces<1>(o, k, a, b, first, last, weight, finish);
+  }
+  template <std::uint32_t piece, class Weight, class Finish>
+  [[gnu::always_inline]] void set_pieces(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
+                                         std::size_t last, Weight&& weight, Finish&& finish) {
     std::uint32_t begin = 0;
-    for (; begin + at_once <= o.count; begin += at_once) {
-      Real sums[at_once] = {};
-      for (std::size_t j = first; j <= last; ++j) {
-        const Real* const u = row(j) + a + begin;
-        const Real* const v = row(k - j) + b + begin;
-        const Real weight = Real(static_cast<double>(j));
-        for (std::uint32_t i = 0; i < at_once; ++i)
-          sums[i] += weighted ? Real(weight * (u[i] * v[i])) : Real(u[i] * v[i]);
-      }
-      for (std::uint32_t i = 0; i < at_once; ++i) r[begin + i] = finish(begin + i, sums[i]);
+    for (; begin + piece <= o.count; begin += piece) set_piece<piece>(o, k, a, b, first, last, begin, weight, finish);
+    if (begin < o.count) set_piece<piece>(o, k, a, b, first, last, o.count - piece, weight, finish);
+  }
+  /// Even and odd terms apart: one addition does not wait for the other.
+  template <std::uint32_t piece, class Weight, class Finish>
+  [[gnu::always_inline]] void set_piece(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
+                                        std::size_t last, std::uint32_t begin, Weight&& weight, Finish&& finish) {
+    Real even[piece] = {}, odd[piece] = {};
+    const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(row_size_);
+    const Real* u = row(first) + a + begin;
+    const Real* v = row(k - first) + b + begin;
+    std::size_t j = first;
+    for (; j < last; j += 2, u += 2 * step, v -= 2 * step) {
+      const Real *const next_u = u + step, *const next_v = v - step;
+      for (std::uint32_t i = 0; i < piece; ++i) even[i] += weight(j, begin + i) * (u[i] * v[i]);
+      for (std::uint32_t i = 0; i < piece; ++i) odd[i] += weight(j + 1, begin + i) * (next_u[i] * next_v[i]);
     }
-    for (; begin < o.count; ++begin) r[begin] = finish(begin, sum<weighted>(k, a + begin, b + begin, first, last));
+    if (j == last) {
+      for (std::uint32_t i = 0; i < piece; ++i) even[i] += weight(j, begin + i) * (u[i] * v[i]);
+    }
+    Real* const r = row(k) + o.result + begin;
+    for (std::uint32_t i = 0; i < piece; ++i) r[i] = finish(begin + i, Real(even[i] + odd[i]));
   }
 
   template <bool weighted>
@@ -223,7 +238,7 @@ class SeriesProgram {
   /// every machine computes the same.
   [[gnu::target("avx2")]] void evaluate_wide(std::size_t k) {
     for (const Operation& operation : operations_) {
-      if (operation.count < 4 || !evaluate_sums(operation, k)) evaluate(operation, k);
+      if (!evaluate_sums(operation, k)) evaluate_others(operation, k);
     }
   }
 #endif
@@ -254,12 +269,12 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
   const Real *const a = row(k) + o.a, *const b = row(k) + o.b, order = Real(static_cast<double>(k));
   const Real* const r = row(0) + o.result;
   const auto all = [&](auto&& each) __attribute__((always_inline)) { return set_each(o, k, each), true; };
-  const auto sums =
-      [&]<bool weighted>(std::bool_constant<weighted>, const Operation& of, Register u, Register v, std::size_t first,
-                         std::size_t last, auto&& finish)
-          __attribute__((always_inline)) { return set_by_sum<weighted>(of, k, u, v, first, last, finish), true; };
-  constexpr std::false_type plain;
-  constexpr std::true_type weighted;
+  const auto sums = [&](auto&& weight, const Operation& of, Register u, Register v, std::size_t first, std::size_t last,
+                        auto&& finish) __attribute__((always_inline)) {
+    return set_by_sum(of, k, u, v, first, last, weight, finish), true;
+  };
+  const auto plain = [](std::size_t, std::uint32_t) { return Real(1); };
+  const auto weighted = [](std::size_t j, std::uint32_t) { return Real(static_cast<double>(j)); };
   const auto just = [](std::uint32_t, const Real& sum) { return sum; };
   const auto by_order = [&](std::uint32_t, const Real& sum) { return sum / order; };
   // r' = slope a' / u: what is left of a_k when the products of known coefficients are taken away.
@@ -320,16 +335,13 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return by_slope(o.b, Real(1));
     case SeriesCode::arc_cosine:
       return by_slope(o.b, Real(-1));
-    case SeriesCode::power: {  // a r' = p r a': sum of (p j - (k - j)) a_j r_(k - j) = sum of ((p + 1) j - k) a_j r_(k
-                               // - j)
+    case SeriesCode::power: {  // a r' = p r a': the sum of (p j - (k - j)) a_j r_(k - j)
       const Real *const p = row(0) + o.b, *const base = row(0) + o.a;
-      set_by_sum<false>(o, k, o.a, o.result, 1, k, just);
-      Real* const here = row(k) + o.result;
-      return sums(weighted, o, o.a, o.result, 1, k - 1, [&](std::uint32_t i, const Real& sum) {
-        // The term of j = k, with r_0, is in the sum without weights alone.
-        const Real last = order * (a[i] * r[i]);
-        const Real total = (p[i] + 1) * (sum + last) - order * here[i];
-        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p[i]) : total / (order * base[i]);
+      const auto weight = [&](std::size_t j, std::uint32_t i) {
+        return (p[i] + Real(1)) * Real(static_cast<double>(j)) - order;
+      };
+      return sums(weight, o, o.a, o.result, 1, k, [&](std::uint32_t i, const Real& sum) {
+        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p[i]) : sum / (order * base[i]);
       });
     }
     case SeriesCode::sine_cosine:

@@ -154,9 +154,19 @@ class SeriesCompiler {
     }
     count_ = static_cast<std::uint32_t>(members.size());
     std::array<Register, 3> operands{};
-    for (std::size_t k = 0; k < count; ++k) operands[k] = side_by_side(lists[k]);
+    for (std::size_t k = 0; k < count; ++k) operands[k] = operand(members, k, lists[k]);
     Register result = operation(members.front(), operands);
     for (const NodeId id : members) place_[id.index] = result++;
+  }
+
+  /// The argument k of all members side by side. Numbers are numbers again there, which no order has to copy.
+  Register operand(const Nodes& members, std::size_t k, const std::vector<Register>& places) {
+    const auto argument = [&](NodeId id) { return arguments(graph_[id]).ids[k]; };
+    if (members.size() == 1 || moves(argument(members.front()))) return side_by_side(places);
+    const Register first = program_.add_number(0);
+    for (std::size_t i = 1; i < members.size(); ++i) (void)program_.add_number(0);
+    for (const NodeId id : members) s_.numbers.push_back({.node = argument(id)});
+    return first;
   }
 
   /// Where these lie side by side, or are copied to.
@@ -339,33 +349,74 @@ class SeriesCompiler {
 
 namespace {
 
-/// Roots of sums of squares as powers of those sums: hypot(x, hypot(y, z))^3 = (x^2 + y^2 + z^2)^1.5 costs one
-/// recurrence where it had five.
-std::vector<NodeId> with_squares(Graph& graph, std::span<const NodeId> roots) {
-  std::map<NodeId, NodeId> image, squares;  // squares: of hypotenuses
-  const auto image_of = [&image](NodeId id) { return image.at(id); };
-  const auto square_of = [&](NodeId id) {
-    const auto known = squares.find(id);
-    return known != squares.end() ? known->second : graph.multiply(image_of(id), image_of(id));
-  };
-  for (const NodeId id : reachable(graph, roots)) {
-    const Node node = graph[id];  // a copy: the graph grows below
-    const bool is_square = node.op == Op::multiply && node.a == node.b;
-    if (node.op == Op::hypotenuse) {
-      squares[id] = graph.add(square_of(node.a), square_of(node.b));
-      image[id] = graph.apply(Op::square_root, squares[id]);
-    } else if (squares.contains(node.a) && is_square) {
-      image[id] = squares[node.a];
-    } else if (squares.contains(node.a) && node.op == Op::power) {
-      image[id] = graph.power(squares[node.a], graph.multiply(graph.constant(0.5), image_of(node.b)));
-    } else {
-      image[id] = with_arguments(graph, id, image_of);
-    }
+/// The equations written so that they cost fewer recurrences. Roots of sums of squares are powers of those sums:
+/// hypot(x, hypot(y, z))^3 = (x^2 + y^2 + z^2)^1.5 is one where it was five. And the terms of a - b and of b - a, by
+/// which a pair of bodies attract each other, are shared: squares, and quotients but for their sign and what does not
+/// move.
+class Sharing {
+ public:
+  Sharing(Graph& graph, std::uint32_t states_begin, std::uint32_t states_end)
+      : graph_(graph), states_begin_(states_begin), states_end_(states_end) {}
+
+  std::vector<NodeId> of(std::span<const NodeId> roots) {
+    for (const NodeId id : reachable(graph_, roots)) image_[id] = rewritten(id);
+    std::vector<NodeId> result;
+    for (const NodeId root : roots) result.push_back(image_.at(root));
+    return result;
   }
-  std::vector<NodeId> result;
-  for (const NodeId root : roots) result.push_back(image_of(root));
-  return result;
-}
+
+ private:
+  NodeId rewritten(NodeId id) {
+    const Node node = graph_[id];  // a copy: the graph grows below
+    if (node.op == Op::hypotenuse) {
+      squares_[id] = graph_.add(square_of(node.a), square_of(node.b));
+      return graph_.apply(Op::square_root, squares_[id]);
+    }
+    if (node.op == Op::multiply && node.a == node.b) return square_of(node.a);
+    if (node.op == Op::power && squares_.contains(node.a))
+      return graph_.power(squares_.at(node.a), graph_.multiply(graph_.constant(0.5), image_.at(node.b)));
+    if (node.op == Op::divide) return quotient(image_.at(node.a), image_.at(node.b));
+    return with_arguments(graph_, id, [this](NodeId argument) { return image_.at(argument); });
+  }
+
+  /// Whether it is a - b where b - a is the one that counts.
+  [[nodiscard]] bool is_turned(NodeId id) const { return graph_[id].op == Op::subtract && graph_[id].b < graph_[id].a; }
+  NodeId turned(NodeId id) { return graph_.subtract(graph_[id].b, graph_[id].a); }
+
+  NodeId square_of(NodeId id) {
+    const auto known = squares_.find(id);
+    if (known != squares_.end()) return known->second;
+    const NodeId root = is_turned(image_.at(id)) ? turned(image_.at(id)) : image_.at(id);
+    return graph_.multiply(root, root);
+  }
+
+  NodeId quotient(NodeId a, NodeId b) {
+    if (!moves(b)) return graph_.divide(a, b);
+    if (is_turned(a)) return graph_.negate(graph_.divide(turned(a), b));
+    const Node node = graph_[a];
+    if (node.op != Op::multiply || moves(node.a) == moves(node.b)) return graph_.divide(a, b);
+    const NodeId factor = moves(node.a) ? node.b : node.a, part = moves(node.a) ? node.a : node.b;
+    if (is_turned(part)) return graph_.multiply(graph_.negate(factor), graph_.divide(turned(part), b));
+    return graph_.multiply(factor, graph_.divide(part, b));
+  }
+
+  /// Whether it depends on the time or a state.
+  bool moves(NodeId id) {
+    for (auto i = static_cast<std::uint32_t>(moves_.size()); i < graph_.size(); ++i) {
+      const Node& node = graph_[NodeId{i}];
+      bool any = node.op == Op::variable &&
+                 (node.number == Layout::time || (node.number >= states_begin_ && node.number < states_end_));
+      for (const NodeId argument : arguments(node)) any = any || moves_[argument.index] != 0;
+      moves_.push_back(any ? 1 : 0);
+    }
+    return moves_[id.index] != 0;
+  }
+
+  Graph& graph_;
+  std::uint32_t states_begin_, states_end_;
+  std::map<NodeId, NodeId> image_, squares_;  // squares of hypotenuses
+  std::vector<char> moves_;
+};
 
 }  // namespace
 
@@ -396,11 +447,11 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
   equations->tables = program.tables;
   std::vector<NodeId> nodes;
   for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
-  equations->derivatives = with_squares(equations->graph, nodes);
-  for (const NodeId id : reachable(equations->graph, equations->derivatives))
-    if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
   const Layout& layout = program.model.layout;
   const auto states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
+  equations->derivatives = Sharing(equations->graph, layout.states, states_end).of(nodes);
+  for (const NodeId id : reachable(equations->graph, equations->derivatives))
+    if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
   program_ = std::make_unique<Program>(Program{.equations = std::move(equations),
                                                .states_begin = layout.states,
                                                .states_end = states_end,
