@@ -58,6 +58,7 @@ KeptValues::KeptValues(const KeptNodes& kept) : kept_(kept) {
   sizes_.resize(values_.size());
   next_.resize(values_.size());
   now_.resize(values_.size());
+  has_extremes_ = std::ranges::any_of(kept_.keeps_, [](const SweepKeep& keep) { return is_extreme(keep.kind); });
 }
 
 std::span<const double> KeptValues::evaluate(double t, std::span<const double> x) {
@@ -98,17 +99,9 @@ void KeptValues::begin(const model::Plan& plan, const X& x) {
 void KeptValues::on_piece(double to, const At& at) {
   take_times(to, at);
   if (to > from_) {
-    Samples samples;
-    if (std::ranges::any_of(kept_.keeps_, [](const SweepKeep& keep) { return is_extreme(keep.kind); })) {
-      for (std::size_t i = 0; i <= parts_of_a_piece; ++i) {
-        const double part = static_cast<double>(i) / static_cast<double>(parts_of_a_piece);
-        samples.t.push_back(i == parts_of_a_piece ? to : from_ + (to - from_) * part);
-        const auto values = evaluate(samples.t.back(), at);
-        samples.values.emplace_back(values.begin(), values.end());
-      }
-    }
+    if (has_extremes_) take_samples(to, at);
     for (std::size_t k = 0; k < values_.size(); ++k) {
-      if (is_extreme(kept_.keeps_[k].kind)) look_between(samples, k, at);
+      if (is_extreme(kept_.keeps_[k].kind)) look_between(k, at);
       if (kept_.keeps_[k].kind != SweepKeep::Kind::mean) continue;
       add_mean(from_, to, k, at, 0);
       if (to > begin_) values_[k].front() = integrals_[k] / (to - begin_);
@@ -128,19 +121,31 @@ void KeptValues::on_jump(double t, const X& before, const X& after) {
   }
 }
 
+/// Samples the piece at equal distances, its ends included.
+void KeptValues::take_samples(double to, const At& at) {
+  sample_times_.clear();
+  samples_.clear();
+  for (std::size_t i = 0; i <= parts_of_a_piece; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(parts_of_a_piece);
+    sample_times_.push_back(i == parts_of_a_piece ? to : from_ + (to - from_) * part);
+    const auto values = evaluate(sample_times_.back(), at);
+    samples_.insert(samples_.end(), values.begin(), values.end());
+  }
+}
+
 /// An extreme lies beside the sample that is higher than its neighbours. One that cannot exceed what has been seen is
 /// passed over.
-void KeptValues::look_between(const Samples& samples, std::size_t keep, const At& at) {
+void KeptValues::look_between(std::size_t keep, const At& at) {
   const double sign = sign_of(kept_.keeps_[keep].kind);
-  const auto value = [&](std::size_t i) { return sign * samples.values[i][keep]; };
-  const std::size_t last = samples.t.size() - 1;
-  for (std::size_t i = 0; i <= last; ++i) see(samples.values[i][keep], keep);
+  const auto value = [&](std::size_t i) { return sign * samples_[i * values_.size() + keep]; };
+  const std::size_t last = sample_times_.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) see(sign * value(i), keep);
   for (std::size_t i = 0; i <= last; ++i) {
     const std::size_t before = i > 0 ? i - 1 : i, behind = i < last ? i + 1 : i;
     if (value(i) < value(before) || value(i) < value(behind)) continue;
     const double rise = std::max(value(i) - value(before), value(i) - value(behind));
     if (!(rise > 0) || value(i) + rise <= sign * values_[keep].front()) continue;
-    double low = samples.t[before], high = samples.t[behind];
+    double low = sample_times_[before], high = sample_times_[behind];
     if (before == i || behind == i) {
       // At an end of the piece it is the end itself, unless the motion rises from there into the piece.
       const double beside = before == i ? low + (high - low) / 64 : high - (high - low) / 64;

@@ -52,15 +52,11 @@ class KeptValues final : public model::MotionWatcher {
   [[nodiscard]] std::span<const double> of(std::size_t keep) const { return values_[keep]; }
 
  private:
-  /// A piece of the motion, sampled at equal distances.
-  struct Samples {
-    std::vector<double> t;
-    std::vector<std::vector<double>> values;  // at each t one for each expression
-  };
   std::span<const double> evaluate(double t, std::span<const double> x);
   std::span<const double> evaluate(double t, const At& at);
   void see(double value, std::size_t keep);
-  void look_between(const Samples& samples, std::size_t keep, const At& at);
+  void take_samples(double to, const At& at);
+  void look_between(std::size_t keep, const At& at);
   void search(double low, double high, std::size_t keep, const At& at);
   void take_times(double to, const At& at);
   void add_mean(double from, double to, std::size_t keep, const At& at, int depth);
@@ -71,6 +67,8 @@ class KeptValues final : public model::MotionWatcher {
   std::vector<double> integrals_, sizes_;    // of the expression and of its absolute value
   std::vector<std::size_t> next_;            // of a series: the next time
   std::vector<double> now_;
+  std::vector<double> sample_times_, samples_;  // of a piece; at each time one for each expression
+  bool has_extremes_ = false;
   X x_;
   double from_ = 0, begin_ = 0;
 };
