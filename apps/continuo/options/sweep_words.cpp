@@ -166,7 +166,10 @@ std::vector<model::Diagnostic> show_moved(const std::vector<model::Diagnostic>& 
     const Line& line = made.lines[i];
     const auto begin = static_cast<std::uint32_t>(made.begins[i]);
     if (line.is_option) {
-      const model::Diagnostic message = moved(diagnostic, begin, 0, line.text.size());
+      model::Diagnostic message = moved(diagnostic, begin, 0, line.text.size());
+      // Nothing can be declared here.
+      if (message.code == "E210" && message.help.starts_with("declare"))
+        message.help = fmt::format("`continuo info {}` lists what there is", original.name());
       show({&message, 1}, model::Source(std::string(option_of(line.sort)), line.text));
     } else {
       of_model.push_back(moved(diagnostic, begin, line.place, original.text().size()));
