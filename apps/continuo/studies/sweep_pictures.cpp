@@ -99,7 +99,7 @@ std::vector<results::Panel> SweepPictures::panels(const SweepReport& report) con
       ++place;
       continue;
     }
-    results::FanChart fan{.x_label = "t",
+    results::FanChart fan{.x_label = with_unit("t", sweep_.model().time_unit),
                           .label = with_unit(keep.name.substr(0, keep.name.find(" at ")), keep.unit),
                           .x = {},
                           .parts = {parts.begin(), parts.end()},
