@@ -207,7 +207,7 @@ class RunOfLane {
     if constexpr (!Source::any_guard) {
       return nullptr;
     } else {
-      const auto evaluate = [this](const auto& place, auto&& values) { guards_at(place, values); };
+      const auto evaluate = [this](const auto& place, auto&& values) { this->guards_at(place, values); };
       return logic_.first_crossing(offset, to, instant, known, evaluate);
     }
   }
