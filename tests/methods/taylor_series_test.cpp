@@ -366,14 +366,21 @@ TEST(TaylorSeries, TakesCoefficientsThatTheSystemGives) {
   }
 }
 
-// 20,000 steps of a circle. With u = 1.1e-16, N steps add up errors of rounding to about sqrt(N) u = 1.6e-14 where each
-// rounds x_new, and to the part h = pi/100 of that where only the change is rounded.
+// 20,000 steps of circles. What rounds x_new, by u = 1.1e-16 or less, moves the radius by some u sqrt(N/12) = 4e-15 in
+// N steps; where only the change is rounded, by the part h = pi/100 of that, for each of its operations.
 TEST(TaylorSeries, RoundingIsNotAddedUp) {
-  const auto solution =
-      solve([](auto, const auto& x, auto& f) { f[0] = x[1], f[1] = -x[0]; }, Two{1, 0}, {0, 200 * std::numbers::pi},
-            TaylorSeries{}, {.step = std::numbers::pi / 100, .save = Save<Two>::only_end()});
-  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
-  EXPECT_NEAR(std::hypot(solution.final_state()[0], solution.final_state()[1]), 1, 2e-15);
+  long double squares = 0;
+  for (int n = 0; n < 8; ++n) {
+    const Two start{std::cos(0.1 + 0.7 * n), std::sin(0.1 + 0.7 * n)};
+    const auto solution =
+        solve([](auto, const auto& x, auto& f) { f[0] = x[1], f[1] = -x[0]; }, start, {0, 200 * std::numbers::pi},
+              TaylorSeries{}, {.step = std::numbers::pi / 100, .save = Save<Two>::only_end()});
+    ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
+    const auto radius = [](const Two& x) { return std::hypot(static_cast<long double>(x[0]), x[1]); };
+    const long double error = radius(solution.final_state()) - radius(start);
+    squares += error * error / 8;
+  }
+  EXPECT_LT(std::sqrt(squares), 1e-15L);
 }
 
 // In other numbers than double.
