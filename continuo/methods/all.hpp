@@ -64,9 +64,13 @@ using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
 /// For stiff systems; all but Rkc2 are implicit and solve algebraic equations.
 using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
                                 Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, Seulex>;
+/// Those that take f as it is: not Taylor series, for which it must be fit for numbers of any type.
+using PlainMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
+                                             std::tuple<Adams, Odex>{}, StiffMethods{}, AutomaticMethods{}));
 /// All methods, in the order of the catalogue.
-using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
-                                           std::tuple<Adams, Odex, TaylorSeries>{}, StiffMethods{}, AutomaticMethods{}));
+using AllMethods =
+    decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
+                            std::tuple<Adams, Odex, TaylorSeries>{}, StiffMethods{}, AutomaticMethods{}));
 
 /// Calls visit.template operator()<M>() for every method M of the list.
 template <class Methods = AllMethods, class Visit>

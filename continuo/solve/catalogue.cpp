@@ -17,13 +17,13 @@ const std::vector<MethodInfo>& method_catalogue() {
   static const std::vector<MethodInfo> all = [] {
     std::vector<MethodInfo> list;
     for_each_method([&]<class M>() {
+      constexpr bool needs_series = requires { M::needs_series; };
       list.push_back({M::name, M::order, detail::order_of_fixed_steps<M>(), M::error_order, M::dense_order,
-                      M::second_order, detail::is_implicit<M>(), detail::is_automatic<M>(), requires { M::needs_series; }});
-});
-return list;
-}
-();
-return all;
+                      M::second_order, detail::is_implicit<M>(), detail::is_automatic<M>(), needs_series});
+    });
+    return list;
+  }();
+  return all;
 }
 
 const MethodInfo* find_method(std::string_view name) {

@@ -121,7 +121,7 @@ Statistics sum(const Statistics& a, const Statistics& b) {
 std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration integration,
                                             Interval<double> interval) {
   std::unique_ptr<Stepping> run;
-  with_method(method, [&](auto chosen) {
+  with_method<AllMethods>(method, [&](auto chosen) {
     run = std::make_unique<SteppingByName>(model_method<decltype(chosen)>(), std::move(integration), interval);
   });
   return run;
