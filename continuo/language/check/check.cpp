@@ -8,11 +8,11 @@
 #include <continuo/language/check/equations/algebraic.hpp>
 #include <continuo/language/check/products.hpp>
 #include <continuo/language/check/run/run_settings.hpp>
-#include <continuo/language/check/run/sweep.hpp>
 #include <continuo/language/check/states/layout.hpp>
 #include <continuo/language/check/views/checks.hpp>
 #include <continuo/language/check/views/drawing.hpp>
 #include <continuo/language/check/views/plots.hpp>
+#include <continuo/language/check/views/sweep.hpp>
 #include <continuo/language/check/world/finish_world.hpp>
 #include <continuo/language/check/world/forces.hpp>
 #include <continuo/language/check/world/make_world.hpp>

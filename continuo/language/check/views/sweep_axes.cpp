@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/check/declarations/files.hpp>
-#include <continuo/language/check/run/sweep_axes.hpp>
+#include <continuo/language/check/views/sweep_axes.hpp>
 
 namespace continuo::model::detail {
 

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/run/sweep.hpp>
-#include <continuo/language/check/run/sweep_axes.hpp>
 #include <continuo/language/check/views/checks.hpp>
+#include <continuo/language/check/views/sweep.hpp>
+#include <continuo/language/check/views/sweep_axes.hpp>
 
 namespace continuo::model::detail {
 
