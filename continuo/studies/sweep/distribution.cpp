@@ -14,13 +14,13 @@ namespace policies = boost::math::policies;
 
 /// Of the normal distribution with mean 0 and deviation 1.
 long double standard_quantile(double u) {
-  using Quiet =  // no exceptions
+  using WithoutExceptions =
       policies::policy<policies::domain_error<policies::ignore_error>, policies::overflow_error<policies::ignore_error>,
                        policies::evaluation_error<policies::ignore_error>>;
   if (u <= 0) return -std::numeric_limits<long double>::infinity();
   if (u >= 1) return std::numeric_limits<long double>::infinity();
   constexpr long double root_of_two = 1.41421356237309504880168872420969808L;
-  return -root_of_two * boost::math::erfc_inv(2 * static_cast<long double>(u), Quiet());
+  return -root_of_two * boost::math::erfc_inv(2 * static_cast<long double>(u), WithoutExceptions());
 }
 
 /// The value without spread, where infinity times zero would be no number.
