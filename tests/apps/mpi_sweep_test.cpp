@@ -19,7 +19,7 @@ constexpr const char* program = nullptr;
 
 using ::testing::HasSubstr;
 
-constexpr const char* swinging =
+constexpr const char* swing_by_ranks =
     "param k = 4\nparam c = 0.1\nx'' = -k*x - c*x'\nx(0) = 1; x'(0) = 0\nrun 0..5\n"
     "sweep { k uniform(1, 9); c normal(0.5, 0.1); runs 1024 sobol seed 7; keep x at end, x at 0..5 by 1 }\n";
 
@@ -28,7 +28,7 @@ class MpiSweep : public testing::Test {
   void SetUp() override {
     if (program == nullptr) GTEST_SKIP() << "built without MPI";
     if (shell_.call("command -v mpirun").exit != 0) GTEST_SKIP() << "mpirun is not installed";
-    shell_.write("swing.sim", swinging);
+    shell_.write("swing.sim", swing_by_ranks);
   }
   /// By so many processes, each of which leaves its number in pid.RANK.
   Result run(int processes, const std::string& arguments, const std::string& after = "") const {

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr const char* swinging =
+constexpr const char* swept_swing =
     "model Swing\n"
     "param k = 4 [N/m] in 0..100, c = 0.1 [N*s/m], m = 1 [kg]\n"
     "x'' = -(k*x + c*x')/m\n"
@@ -34,7 +34,7 @@ constexpr const char* swinging =
 
 TEST(SweepStudy, HasTheSameBytesHoweverItIsMade) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   ASSERT_EQ(shell.run("sweep swing.sim -o one.csv --threads 1").exit, 0);
   const std::string whole = shell.read("one.csv");
   EXPECT_EQ(lines_of(whole).size(), 302U);
@@ -55,7 +55,7 @@ TEST(SweepStudy, HasTheSameBytesHoweverItIsMade) {
 
 TEST(SweepStudy, GoesOnAfterItWasKilled) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   ASSERT_EQ(shell.run("sweep swing.sim -o one.nc").exit, 0);
   const std::string whole = shell.read("one.nc");
   // Killed once some chunks are there; then interrupted; then to the end.
@@ -83,7 +83,7 @@ TEST(SweepStudy, GoesOnAfterItWasKilled) {
 
 TEST(SweepStudy, AnInterruptKeepsWhatIsDone) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   const Result result =
       shell.interrupt("sweep swing.sim -o k.csv --runs '300000 sobol seed 7'", "k.csv.sweep/*.chunk", 10);
   EXPECT_EQ(result.exit, 130);
@@ -93,7 +93,7 @@ TEST(SweepStudy, AnInterruptKeepsWhatIsDone) {
 
 TEST(SweepStudy, ARunOfItIsRepeatedAlone) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   ASSERT_EQ(shell.run("sweep swing.sim -o all.csv").exit, 0);
   const std::string row = lines_of(shell.read("all.csv"))[2 + 123];
   const Result one = shell.run("run swing.sim --sweep-run 123 -o one.csv");
@@ -111,7 +111,7 @@ TEST(SweepStudy, ARunOfItIsRepeatedAlone) {
 
 TEST(SweepStudy, TheCommandLineReplacesAndExtends) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   const Result grid = shell.run(
       "sweep swing.sim --vary 'k from 100 to 400 [N/km] count 4' --vary 'c in (0.1, 0.2)' --runs "
       "all --keep 'max(x) as top' -o -");
@@ -127,7 +127,7 @@ TEST(SweepStudy, TheCommandLineReplacesAndExtends) {
 
 TEST(SweepStudy, BadSweepsEndWithAMessage) {
   const Shell shell;
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   shell.write("plain.sim", spring);
   const auto said = [&](const std::string& words, int exit) {
     const Result result = shell.run(words);
@@ -169,7 +169,7 @@ TEST(SweepStudy, AModelThatFailsInAPartOfTheSpaceIsNoLostStudy) {
 TEST(SweepStudy, AFullDiskLosesNothing) {
   const Shell shell;
   if (shell.call("mkdir small && mount -t tmpfs -o size=24k none small").exit != 0) GTEST_SKIP() << "no mount here";
-  shell.write("swing.sim", swinging);
+  shell.write("swing.sim", swept_swing);
   const Result full = shell.run("sweep swing.sim -o small/k.csv");
   EXPECT_EQ(full.exit, 1) << full.err;
   EXPECT_THAT(full.err, HasSubstr("No space left"));

@@ -10,12 +10,12 @@
 namespace continuo::model {
 namespace {
 
-const std::string spring =
+const std::string model_to_sweep =
     "param k = 4 [N/m], c = 0.5 [N*s/m], m = 1 [kg]\ninput u = 0 [N]\nx'' = (u - k*x - c*x')/m\n"
     "x(0) = 1 [m]\nx'(0) = 0 [m/s]\nwhen x falls through 0 [m] { mark \"down\" }\nrun 0..10 [s]\n";
 
 SweepPlan plan_of(const std::string& block) {
-  const Model model = good(spring + "sweep {\n" + block + "\n}\n");
+  const Model model = good(model_to_sweep + "sweep {\n" + block + "\n}\n");
   return model.sweep ? *model.sweep : SweepPlan{};
 }
 std::vector<double> points(const SweepAxis& axis) {
@@ -23,11 +23,11 @@ std::vector<double> points(const SweepAxis& axis) {
   return points ? points->values : std::vector<double>{};
 }
 Said said_of(const std::string& block, std::string_view code) {
-  return said(spring + "sweep {\n" + block + "\n}\n", code);
+  return said(model_to_sweep + "sweep {\n" + block + "\n}\n", code);
 }
 
 TEST(CheckSweep, AModelWithoutOneHasNone) {
-  EXPECT_EQ(good(spring).sweep, nullptr);
+  EXPECT_EQ(good(model_to_sweep).sweep, nullptr);
 }
 
 TEST(CheckSweep, TheWordsMayBeNamesElsewhere) {
@@ -118,7 +118,7 @@ TEST(CheckSweep, SamplesComeFromAColumn) {
   std::ofstream(folder / "one.csv") << "3\n4\n";
   std::ofstream(folder / "short.csv") << "m,c\n1,x\n";
   const auto read = [&](const std::string& block) {
-    return load(Source((folder / "model.sim").string(), spring + "sweep {\n" + block + "\n}\n"));
+    return load(Source((folder / "model.sim").string(), model_to_sweep + "sweep {\n" + block + "\n}\n"));
   };
   const Loaded both = read("k from \"samples.csv\"\nc from \"samples.csv\"; m from \"one.csv\"");
   ASSERT_TRUE(both) << both.text();
@@ -163,8 +163,8 @@ TEST(CheckSweep, MistakesAreSaidAtTheirPlace) {
   EXPECT_EQ(place(said_of("k from 1 to 2", "E110")), "9:14");
   EXPECT_EQ(place(said_of("k from 1 count 2", "E110")), "9:10");
   EXPECT_EQ(place(said_of("runs 5; runs 6", "E262")), "9:9");
-  EXPECT_EQ(place(said(spring + "sweep { k in 1 }\nsweep { k in 2 }\n", "E262")), "9:1");
-  EXPECT_EQ(place(said(spring + "for i in 1..2 { sweep { k in 1 } }\n", "E123")), "8:17");
+  EXPECT_EQ(place(said(model_to_sweep + "sweep { k in 1 }\nsweep { k in 2 }\n", "E262")), "9:1");
+  EXPECT_EQ(place(said(model_to_sweep + "for i in 1..2 { sweep { k in 1 } }\n", "E123")), "8:17");
 }
 
 }  // namespace
