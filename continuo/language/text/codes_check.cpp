@@ -240,8 +240,8 @@ Each is varied once. Of a model with conditions at several times only parameters
          R"(Without `runs` a sweep runs all combinations of its values. `runs 10000 sobol seed 7` makes so many runs,
 with values drawn from the distributions, and from grids, lists and files with equal probability. What has a
 distribution needs it. Instead of sobol there are latin_hypercube and monte_carlo; `runs 10000 indices` chooses runs
-that tell how much of the spread each quantity causes (Sobol' indices), and `runs 200 morris` few runs that tell which of
-many quantities matter. There are at most 1e9 runs.)"},
+that tell how much of the spread each quantity causes (Sobol' indices), and `runs 200 morris` few runs that tell which
+of many quantities matter. There are at most 1e9 runs.)"},
     Code{"E286", "this cannot be kept of a run",
          R"(A sweep keeps of every run what a check can read, and what happens along the run:
 
