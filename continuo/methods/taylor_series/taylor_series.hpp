@@ -276,8 +276,8 @@ struct TaylorSeries {
   }
   /// In what units of a tolerance term j is measured: the last one is to be e^-2 tolerances, that before it 1.
   template <class Real>
-  [[nodiscard]] static Real allowance(std::size_t order, std::size_t j) {
-    return j == order ? Real(7.38905609893065) : Real(1);
+  [[nodiscard]] static Real allowance(std::size_t last, std::size_t j) {
+    return j == last ? Real(7.38905609893065) : Real(1);
   }
 
   template <State X>

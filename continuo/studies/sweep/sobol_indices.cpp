@@ -12,7 +12,7 @@
 namespace continuo::studies {
 namespace {
 
-constexpr std::uint64_t samples = 16;  // independent of each other; their spread tells the error
+constexpr std::uint64_t independent_samples = 16;  // independent of each other; their spread tells the error
 constexpr double confidence = 0.95;
 constexpr Estimate no_estimate{NAN, NAN, NAN};
 
@@ -69,23 +69,23 @@ double mean_of_a_and_b(const Rows& rows) {
 }  // namespace
 
 std::uint64_t SobolDesign::replicates() const {
-  return sampling == Sampling::monte_carlo ? rows : samples;
+  return sampling == Sampling::monte_carlo ? rows : independent_samples;
 }
 
 std::uint64_t sobol_rows(Sampling sampling, std::size_t factors, std::uint64_t runs) {
   const std::uint64_t rows = runs / (factors + 2);
   if (sampling == Sampling::monte_carlo) return rows;
-  const std::uint64_t each = rows / samples;
-  return samples * (sampling == Sampling::sobol ? std::bit_floor(each) : each);
+  const std::uint64_t each = rows / independent_samples;
+  return independent_samples * (sampling == Sampling::sobol ? std::bit_floor(each) : each);
 }
 
 Status check(const SobolDesign& design) {
-  const std::uint64_t least = design.sampling == Sampling::monte_carlo ? 2 : samples;
+  const std::uint64_t least = design.sampling == Sampling::monte_carlo ? 2 : independent_samples;
   if (design.factors == 0) return invalid_input("nothing is varied; name at least one quantity");
-  if (design.rows < least || design.rows % (design.sampling == Sampling::monte_carlo ? 1 : samples) != 0)
+  if (design.rows < least || design.rows % (design.sampling == Sampling::monte_carlo ? 1 : independent_samples) != 0)
     return invalid_input(fmt::format(
         "Sobol' indices of {0} quantities by {1} need a multiple of {2} runs; ask for {3} or more", design.factors,
-        to_string(design.sampling), least * (design.factors + 2), 64 * samples * (design.factors + 2)));
+        to_string(design.sampling), least * (design.factors + 2), 64 * independent_samples * (design.factors + 2)));
   return check(SamplingPlan{design.sampling, design.rows, 2 * design.factors, design.seed, design.replicates()});
 }
 
