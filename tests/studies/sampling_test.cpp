@@ -48,7 +48,7 @@ TEST(Philox, GivesTheNumbersOfItsAuthors) {  // known answers of Random123: phil
 }
 
 TEST(Permutation, TakesEveryNumberToAnother) {
-  for (std::uint64_t count : {1, 2, 3, 7, 64, 1000, 4097}) {
+  for (std::uint64_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4097u}) {
     std::set<std::uint64_t> images;
     for (std::uint64_t i = 0; i < count; ++i) images.insert(detail::permuted(i, count, 99));
     EXPECT_EQ(images.size(), count);
@@ -79,7 +79,7 @@ TEST(Permutation, TakesNeighboursToPlacesThatHaveNothingInCommon) {
 
 TEST(Sampling, FillsEachDimensionEvenly) {
   for (const Sampling kind : all_kinds) {
-    for (const std::size_t dimension : {0, 1, 5, 6}) {
+    for (const std::size_t dimension : {0u, 1u, 5u, 6u}) {
       const Sampler sampler = sampler_of({.sampling = kind, .runs = 20000, .dimensions = 7, .seed = 3});
       std::vector<int> counts(100);
       for (std::uint64_t run = 0; run < 20000; ++run)
@@ -125,8 +125,8 @@ TEST(Sampling, ScramblingsOfSobolPointsHaveNothingInCommon) {
 }
 
 TEST(Sampling, LatinHypercubeHasOnePointInEveryPart) {
-  for (const std::uint64_t runs : {1, 2, 3, 10, 1000, 4097}) {
-    for (const std::uint64_t replicates : {1, 3}) {
+  for (const std::uint64_t runs : {1u, 2u, 3u, 10u, 1000u, 4097u}) {
+    for (const std::uint64_t replicates : {1u, 3u}) {
       const Sampler sampler = sampler_of({.sampling = Sampling::latin_hypercube,
                                           .runs = runs * replicates,
                                           .dimensions = 3,
@@ -166,7 +166,7 @@ bool is_net(const std::vector<std::array<double, 2>>& points) {
 }
 
 TEST(Sampling, SobolPointsAreANetWhateverTheSeed) {
-  for (const std::uint64_t runs : {2, 16, 1024}) {
+  for (const std::uint64_t runs : {2u, 16u, 1024u}) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const Sampler sampler =
           sampler_of({.sampling = Sampling::sobol, .runs = 2 * runs, .dimensions = 2, .seed = seed});

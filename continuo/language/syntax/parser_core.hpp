@@ -1,8 +1,8 @@
 // continuo/language/syntax/parser_core.hpp
 // The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
 // (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
-// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), sweeps (parser_sweep.cpp), worlds (parser_world.cpp). The reading of
-// tokens and what happens after an error is parser_core.cpp.
+// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), sweeps (parser_sweep.cpp), worlds
+// (parser_world.cpp). The reading of tokens and what happens after an error is parser_core.cpp.
 #pragma once
 #include <cstddef>
 #include <deque>
