@@ -146,6 +146,22 @@ TEST_F(SweepChunks, OutcomesDoNotDependOnThreadsOrOrder) {
   }
 }
 
+// The first results of a sweep do not wait for a thousandth of it.
+TEST_F(SweepChunks, BeginWithOneRunAndGrowToTwiceTheSizeAtMost) {
+  for (std::uint64_t runs = 1; runs < 20'000'000; runs += 1 + runs / 7) {
+    const SweepIdentity identity{.hash = {}, .runs = runs, .width = runs % 5 * 1000};
+    EXPECT_EQ(identity.size(0), 1u);
+    std::uint64_t next = 0, before = 1;
+    for (std::uint64_t chunk = 0; chunk < identity.chunks(); ++chunk) {
+      ASSERT_EQ(identity.first_run(chunk), next);
+      ASSERT_GE(identity.size(chunk), 1u);
+      ASSERT_LE(identity.size(chunk), std::min(2 * before, identity.per_chunk()));
+      before = identity.size(chunk), next += before;
+    }
+    ASSERT_EQ(next, runs);
+  }
+}
+
 TEST_F(SweepChunks, PartsAreAllChunksOnce) {
   for (const std::uint64_t runs : {1U, 5U, 1000U, 5000U}) {
     const SweepIdentity identity{.hash = {}, .runs = runs, .width = 1};

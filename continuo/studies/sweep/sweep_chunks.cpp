@@ -72,8 +72,8 @@ std::optional<std::string> content_of(const std::string& path) {
 }
 
 std::string text_of(const SweepIdentity& identity) {
-  return fmt::format("{}{}\n{} runs, {} in a chunk, {} numbers of each\n", kind_of_folder, identity.hash, identity.runs,
-                     identity.per_chunk(), identity.width);
+  return fmt::format("{}{}\n{} runs, {} in a chunk at most, {} numbers of each\n", kind_of_folder, identity.hash,
+                     identity.runs, identity.per_chunk(), identity.width);
 }
 
 std::string head_of(const SweepIdentity& identity, std::uint64_t first, std::uint64_t size) {
@@ -114,8 +114,27 @@ std::optional<std::string_view> proved(std::string_view content) {
 }  // namespace
 
 std::uint64_t SweepIdentity::per_chunk() const {
-  const std::uint64_t by_number = (runs + many_chunks - 1) / many_chunks;
+  const std::uint64_t by_number = runs / many_chunks + 1;
   return std::max<std::uint64_t>(1, std::min(by_number, most_bytes / (8 * (width + 2))));
+}
+
+// With P runs in a chunk at most, chunk c has min(2^c, P): those before chunk L, the first with 2^L >= P, have 2^L - 1
+// runs together.
+std::uint64_t SweepIdentity::first_run(std::uint64_t chunk) const {
+  const std::uint64_t most = per_chunk(), growing = std::bit_width(most - 1);
+  if (chunk <= growing) return (std::uint64_t{1} << chunk) - 1;
+  return (std::uint64_t{1} << growing) - 1 + (chunk - growing) * most;
+}
+
+std::uint64_t SweepIdentity::size(std::uint64_t chunk) const {
+  return std::min(first_run(chunk + 1), runs) - first_run(chunk);
+}
+
+std::uint64_t SweepIdentity::chunks() const {
+  const std::uint64_t most = per_chunk(), growing = std::bit_width(most - 1);
+  const std::uint64_t before = (std::uint64_t{1} << growing) - 1;
+  if (runs <= before) return std::bit_width(runs);
+  return growing + (runs - before + most - 1) / most;
 }
 
 SweepIdentity identity_of(const PreparedSweep& sweep, const std::string& program) {

@@ -26,14 +26,15 @@ struct SweepIdentity {
   std::uint64_t runs = 0;   //
   std::uint64_t width = 0;  // how many numbers are kept of each run
 
-  /// How many runs make a chunk: about a thousand chunks, none of them large.
+  /// How many runs make a chunk: about a thousand chunks, none of them large. The first ones have 1, 2, 4, ... runs, so
+  /// that the first results come at once, however many there will be.
   [[nodiscard]] std::uint64_t per_chunk() const;
   /// How many chunks there are.
-  [[nodiscard]] std::uint64_t chunks() const { return (runs + per_chunk() - 1) / per_chunk(); }
+  [[nodiscard]] std::uint64_t chunks() const;
   /// The first run of a chunk.
-  [[nodiscard]] std::uint64_t first_run(std::uint64_t chunk) const { return chunk * per_chunk(); }
+  [[nodiscard]] std::uint64_t first_run(std::uint64_t chunk) const;
   /// How many runs are in it.
-  [[nodiscard]] std::uint64_t size(std::uint64_t chunk) const { return std::min(per_chunk(), runs - first_run(chunk)); }
+  [[nodiscard]] std::uint64_t size(std::uint64_t chunk) const;
 };
 
 /// That of a sweep. `program`: the version of the program, other versions have other bits.
