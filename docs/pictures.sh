@@ -48,6 +48,12 @@ study differences converge --derivative "sin(x)" --at 1
 study orders converge models/mass_spring_damper.sim --methods euler,heun,bogacki_shampine3,rk4,tsitouras5
 study regions stability euler,heun,rk4,central_difference,implicit_euler,bdf2
 study heat_regions stability euler,heun,rk4,dop853 --model models/heat_equation.sim
+study sweep_ball sweep models/bouncing_ball.sim --vary "h0 normal(10, 0.02) [m]" --vary "e uniform(0.88, 0.92)" \
+  --runs "1024 sobol seed 7" --keep "h at 0..10 by 0.05"
+study sweep_damping sweep models/mass_spring_damper.sim --vary "c from 0.2 to 8 [N*s/m] count 40" \
+  --vary "m from 0.25 to 4 [kg] count 40" --keep "max(x) as peak" --until 60
+block tutorial_sweep.md braking.sim
+study sweep_braking sweep "$scratch/braking.sim"
 for file in spring.csv ball.csv ball.sim; do block tutorial_fit.md "$file"; done
 study sense_spring sense models/mass_spring_damper.sim --param k,c
 study fit_spring fit models/mass_spring_damper.sim "$scratch/spring.csv" --param k,c

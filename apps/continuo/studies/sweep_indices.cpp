@@ -50,9 +50,9 @@ SweepIndices::SweepIndices(const studies::PreparedSweep& sweep) : sweep_(sweep) 
   for (const model::SweepKeep& keep : sweep.plan().keeps) {
     const bool is_series = keep.kind == model::SweepKeep::Kind::series;
     place += is_series ? keep.times.count : 1;
-    Outcome outcome{keep.name + (keep.unit.empty() ? "" : " [" + keep.unit + "]"), place - 1};
-    if (is_series) outcome.name += fmt::format(" at t = {}", keep.times.at(keep.times.count - 1));
-    outcomes_.push_back(std::move(outcome));
+    const std::string when = is_series ? fmt::format(" at t = {}", keep.times.at(keep.times.count - 1)) : "";
+    const std::string unit = keep.unit.empty() ? "" : " [" + keep.unit + "]";
+    outcomes_.push_back({.quantity = keep.name + when, .name = keep.name + unit + when, .place = place - 1});
   }
 }
 
@@ -62,7 +62,7 @@ void SweepIndices::add(const studies::SweepOutcome& outcome) {
 
 std::string SweepIndices::indices_text(const Outcome& outcome) const {
   const auto indices = sobol_indices(*sweep_.design()->indices(), outcome.values);
-  std::string text = fmt::format("\n{:<24}  {:<26}  {}\n", "variance of " + outcome.name, "first order", "total");
+  std::string text = fmt::format("\n{:<24}  {:<26}  {}\n", "variance of " + outcome.quantity, "first order", "total");
   for (std::size_t i = 0; i < names_.size(); ++i)
     text += fmt::format("  {:<22}  {:<26}  {}\n", names_[i], share_of(indices.first[i]), share_of(indices.total[i]));
   return text + left_out_text(indices.missing, "rows");
@@ -121,7 +121,7 @@ std::vector<results::Panel> SweepIndices::panels() const {
       results::BarGroup first{"first order", {}}, total{"total", {}};
       for (const Estimate& e : indices.first) first.bars.push_back(bar_of(e));
       for (const Estimate& e : indices.total) total.bars.push_back(bar_of(e));
-      panels.push_back(results::bar_panel("part of the variance of " + outcome.name, names_, {first, total}));
+      panels.push_back(results::bar_panel("part of the variance of " + outcome.quantity, names_, {first, total}));
     } else {
       const auto screening = morris_screening(*sweep_.design()->screening(), outcome.values);
       results::BarGroup effects{"mean size of the effects (mu*)", {}};

@@ -29,8 +29,8 @@ class SweepIndices {
  private:
   /// A number of which indices are told: of a series the last one.
   struct Outcome {
-    std::string name;
-    std::size_t place = 0;  // among all that is kept
+    std::string quantity, name;  // without and with its unit: a part of a variance has none
+    std::size_t place = 0;       // among all that is kept
     std::vector<double> values{};
   };
   std::string indices_text(const Outcome& outcome) const;
