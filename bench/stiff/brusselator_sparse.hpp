@@ -17,7 +17,9 @@ struct SparseBrusselator : BrusselatorLine<> {
   SparsePattern pattern;
   std::vector<std::size_t> place;  // of each entry of jacobian_entries in the pattern
 
-  SparseBrusselator() {
+  explicit SparseBrusselator(std::size_t count = 500) {
+    points = count;
+    diffusion = static_cast<double>((points + 1) * (points + 1)) / 50;
     const State x = start();
     std::vector<MatrixPlace> places;
     jacobian_entries(x, [&](std::size_t row, std::size_t column, double) {
