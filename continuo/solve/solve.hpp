@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/solve/erased_system.hpp>
 #include <continuo/solve/integrator.hpp>
 #include <continuo/solve/solution.hpp>
 
@@ -214,7 +215,8 @@ struct EventsOfOptions {};
 
 /// Integrates dx/dt = f(t, x) from x(from) = x0. A failure on the way does not throw: see Solution::outcome. The run
 /// copies f; std::ref(f) integrates f itself. `events` may be a source of events of your own, see EventSource.
-template <class System, class X, class M, class Events = detail::EventsOfOptions>
+template <class System, class X, class M, class Events = detail::EventsOfOptions,
+          bool Optimized = detail::program_is_optimized>  // of the type, lest a program has two functions of one name
   requires(!std::same_as<M, typename detail::TypesOfRun<X>::Settings>)
 [[nodiscard]] typename detail::TypesOfRun<X>::Result solve(System system, X x0,
                                                            Interval<typename detail::TypesOfRun<X>::Real> interval,
@@ -223,6 +225,10 @@ template <class System, class X, class M, class Events = detail::EventsOfOptions
                                                            Events events = {}) {
   if constexpr (!detail::check_call<HeldSystem<System>, X, M>()) {
     return {};
+  } else if constexpr (std::same_as<Events, detail::EventsOfOptions> &&
+                       detail::runs_in_library<HeldSystem<System>, X, M, Optimized>) {
+    return detail::RunsInLibrary<X>::run(ErasedSystem<X>(std::move(system)), std::move(x0), interval, M::name,
+                                         std::move(options));
   } else if constexpr (std::same_as<Events, detail::EventsOfOptions>) {
     Integrator<HeldSystem<System>, X, M> integrator(std::move(system), std::move(x0), interval, method,
                                                     std::move(options));

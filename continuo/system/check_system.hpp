@@ -126,6 +126,16 @@ template <class F>
 concept MentionsPair =
     requires { requires std::is_member_function_pointer_v<decltype(&F::pair)>; } && !requires(F& f) { f.pair(); };
 
+/// A system that says nothing but its right-hand side. A final class may say more, which is not seen.
+template <class F>
+concept IsOnlyRightHandSide =
+    (Inspectable<F> || !std::is_class_v<F>) &&
+    !(MentionsComponentName<F> || MentionsPairCount<F> || MentionsPair<F> || MentionsIgnoresVelocity<F> ||
+      MentionsJacobian<F> || MentionsJacobianPattern<F> || MentionsJacobianValues<F> || MentionsJacobianBand<F> ||
+      MentionsJacobianAction<F> || MentionsTimeDerivative<F> || MentionsSetUpPreconditioner<F> ||
+      MentionsPrecondition<F> || MentionsAutonomous<F> || MentionsSpectralRadius<F> || MentionsMassMatrix<F> ||
+      MentionsStiffJacobian<F> || MentionsHasMass<F> || MentionsNonstiff<F> || MentionsStiff<F> || MentionsMass<F>);
+
 // The third parameter of a function with three, as declared; void where there is none, or more than one to choose from.
 template <class Function>
 struct ThirdParameter {
