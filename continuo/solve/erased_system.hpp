@@ -69,9 +69,9 @@ using MethodsInLibrary =
     std::tuple<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf, Dop853, DormandPrince5, Rk4, Tsitouras5>;
 
 #ifdef __OPTIMIZE__
-inline constexpr bool program_is_optimized = true;
+constexpr bool program_is_optimized = true;
 #else
-inline constexpr bool program_is_optimized = false;
+constexpr bool program_is_optimized = false;
 #endif
 
 /// Whether `solve` calls the library for this run.
