@@ -72,7 +72,8 @@ template <std::size_t W = default_lanes, class F, RunStarts Starts, class M, cla
   (result.event_names.push_back(events.name), ...);
   if (starts.size() == 0) return result;
   const std::tuple<Events...> list(events...);
-  detail::RunSettings<X, P, Events...> settings{interval, options.of_one_run(), options.keep_events, list};
+  detail::RunSettings<X, P, Events...> settings{interval, options.of_one_run(), options.keep_events, list,
+                                                options.watcher};
   F copy = f;
   settings.problem = detail::problem_of_all<M>(copy, detail::as_run_start(starts[0]), settings);
   detail::RunQueue<X, P> queue(starts.size(), options, result.runs);

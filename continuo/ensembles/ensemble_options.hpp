@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -9,6 +10,17 @@
 #include <continuo/solve/options.hpp>
 
 namespace continuo {
+
+/// Who looks at the motions of an ensemble between the ends of their steps.
+template <State X>
+class RunWatcher {
+ public:
+  virtual ~RunWatcher() = default;
+  /// Whether the piece of this run that ends at `to` is to be shown. Threads ask at the same time.
+  [[nodiscard]] virtual bool wants(std::size_t run, double to) = 0;
+  /// Shows it: `at(t, x)` gives the state at a time of the piece, its ends included. Of one run one after the other.
+  virtual void on_piece(std::size_t run, double to, const std::function<void(double t, X& x)>& at) = 0;
+};
 
 /// The options of an ensemble: those of each run, as in `Options`, and what happens to the results.
 template <State X, State P>
@@ -24,6 +36,7 @@ struct EnsembleOptions {
   std::size_t max_steps = 10'000'000;                         // of each run, accepted and rejected together
   std::size_t max_rejects_in_a_row = 60;                      // at more a run ends as `too_many_rejects`
   std::vector<double> save_at{};                              // times, in the direction of time: RunResult::rows
+  RunWatcher<X>* watcher = nullptr;                           // sees the motions between the ends of their steps
   bool keep_events = true;                                    // whether results list the events
   int threads = 0;                                            // 0: as many as the machine runs at once, and never more
   /// Gets each result, in the order of the numbers of the runs and never two at once, whichever thread has computed it;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <string>
@@ -20,6 +21,7 @@
 #include <continuo/methods/explicit_rk/rk4.hpp>
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
+#include <continuo/solve/integrator.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::ensembles_test {
@@ -161,6 +163,73 @@ TEST(EnsembleAndSolve, HaveTheSameBitsWithFixedStepsAndForVectors) {
     EXPECT_EQ(solve(f, list[i].x, {2, -1.03}, Rk4{}, {.step = 0.0625}).final_state(), fixed.runs[i].x);
     EXPECT_EQ(solve(f, vectors[i].x, {0, 5}, Dop853{}, {.rtol = 1e-9}).final_state(), of_vectors.runs[i].x);
   }
+}
+
+/// A system that says that it depends on time: its steps are at most a fiftieth of the run.
+struct Pulse {
+  bool autonomous = false;
+  template <class Real, class State>
+  void operator()(const Real& t, const State& x, State& dxdt, const std::vector<Real>& p) const {
+    const Real away = t - p[0];
+    dxdt[0] = Real(0.01) / (Real(1e-4) + away * away) - x[0];
+  }
+};
+/// Keeps x at the middle of each step, and the last x.
+struct Middles final : RunWatcher<std::vector<double>> {
+  std::vector<double> last;
+  std::vector<std::vector<double>> seen;
+  explicit Middles(std::size_t runs) : last(runs, 0.0), seen(runs) {}
+  bool wants(std::size_t run, double) override { return run != 1; }
+  void on_piece(std::size_t run, double to, const std::function<void(double t, std::vector<double>& x)>& at) override {
+    std::vector<double> x(1);
+    for (const double t : {last[run] + (to - last[run]) / 2, to}) {
+      at(t, x);
+      seen[run].push_back(x[0]);
+    }
+    last[run] = to;
+  }
+};
+
+struct PulseAlone {
+  std::vector<double> p;
+  bool autonomous = false;
+  void operator()(double t, const std::vector<double>& x, std::vector<double>& dxdt) const { Pulse{}(t, x, dxdt, p); }
+};
+struct MiddlesAlone {
+  std::vector<double>& seen;
+  double& last;
+  void on_segment(auto& run, double, double to) {
+    std::vector<double> x(1);
+    for (const double t : {last + (to - last) / 2, to}) {
+      run.at(t, x);
+      seen.push_back(x[0]);
+    }
+    last = to;
+  }
+  void on_event(auto&, const auto&) {}
+};
+
+TEST(EnsembleAndSolve, HaveTheSameBitsWhereTimeMattersAndBetweenSteps) {
+  using V = std::vector<double>;
+  const std::vector<RunStart<V, V>> list = {{{1.0}, {3.3}}, {{0.0}, {2.0}}, {{0.5}, {7.77}}};
+  Middles middles(list.size());
+  const auto event = every("kick", 1.7, 2, [](auto& now) { now.x[0] *= 0.5; });
+  const auto result = ensemble<2>(Pulse{}, list, {0, 10}, Tsitouras5{}, {.watcher = &middles}, event);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Integrator integrator(PulseAlone{list[i].p}, list[i].x, {0, 10}, Tsitouras5{}, {.events = {event}});
+    std::vector<double> seen;
+    double last = 0;
+    MiddlesAlone look{seen, last};
+    while (integrator.advance(look)) {
+    }
+    EXPECT_EQ(integrator.x(), result.runs[i].x);
+    EXPECT_EQ(integrator.statistics().steps, result.runs[i].steps);
+    EXPECT_GE(result.runs[i].steps, 50U);
+    if (i != 1) {
+      EXPECT_EQ(middles.seen[i], seen);
+    }
+  }
+  EXPECT_TRUE(middles.seen[1].empty());
 }
 
 #endif

@@ -42,9 +42,9 @@ class LaneDriver {
         slope_(x_),
         work_(M::workspace(x_)),
         polynomial_(x_),
-        sizes_(settings.options, settings.forward()),
+        sizes_(settings.options, settings.interval, is_known_to_depend_on_time(f_)),
         tolerance_(settings.options),
-        has_rows_(!settings.options.save.times.empty()) {
+        has_rows_(!settings.options.save.times.empty() || settings.watcher) {
     runs_.reserve(W);
     for (std::size_t lane = 0; lane < W; ++lane) runs_.emplace_back(f_, settings_, as_run_start(starts[0]));
   }
@@ -331,7 +331,7 @@ class LaneDriver {
       if (!sizes_.is_active(lane) || !sizes_.accepted()[lane]) continue;
       Run& one = runs_[lane];
       const double end = sizes_.end()[lane];
-      const bool looks = near[lane] || one.must_look() || one.has_row_before(end);
+      const bool looks = near[lane] || one.must_look() || one.has_row_before(end) || one.is_watched(end);
       if (!looks && !one.ends_at(end)) {
         one.skip_step();
         continue;
@@ -410,7 +410,7 @@ class LaneDriver {
   LaneTolerance<W> tolerance_;
   Wide fresh_{0.0};  // 1 where work_ has f at the beginning of the next step
   std::vector<Run> runs_;
-  bool has_rows_;
+  bool has_rows_;           // or somebody who may want to see pieces of the motion
   bool exhausted_ = false;  // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
   std::optional<std::size_t> pending_;  // a run that waits for room

@@ -46,11 +46,15 @@ class LaneSizes {
   using Wide = Lanes<double, W>;
   using Mask = LaneMask<double, W>;
 
+  /// `depends_on_time`: the system says so, and then steps are at most a fiftieth of the run, see StepControl.
   template <State X>
-  LaneSizes(const Options<X>& options, double forward)
-      : forward_(forward),
+  LaneSizes(const Options<X>& options, Interval<double> interval, bool depends_on_time)
+      : begin_(interval.from),
+        forward_(interval.to < interval.from ? -1.0 : 1.0),
         step_(options.step),
         max_step_(options.max_step),
+        depends_on_time_(depends_on_time),
+        longest_(options.max_step),
         controller_(options.controller),
         max_steps_(static_cast<double>(options.max_steps)),
         max_rejects_(options.max_rejects_in_a_row) {}
@@ -66,6 +70,7 @@ class LaneSizes {
     active_.set(lane, 1.0);
     steps_.set(lane, 0.0);
     rejected_[lane] = 0;
+    reach_[lane] = 0;
   }
   void end_run(std::size_t lane) { active_.set(lane, 0.0); }
   /// The motion begins at t, or begins anew there; `size` is that of the first step.
@@ -75,11 +80,16 @@ class LaneSizes {
     grid_steps_.set(lane, 0.0);
     next_.set(lane, size);
     carried_.set(lane, 0.0);
-    limit_.set(lane, limit);
+    set_limit(lane, limit);
     last_error_[lane] = older_error_[lane] = 0;
     rejects_[lane] = 0;
   }
-  void set_limit(std::size_t lane, double limit) { limit_.set(lane, limit); }
+  void set_limit(std::size_t lane, double limit) {
+    limit_.set(lane, limit);
+    if (!depends_on_time_) return;
+    reach_[lane] = std::max(reach_[lane], std::abs(limit - begin_));
+    longest_.set(lane, std::min(max_step_, reach_[lane] / parts_of_run));
+  }
   [[nodiscard]] std::size_t steps(std::size_t lane) const { return static_cast<std::size_t>(steps_[lane]); }
   [[nodiscard]] std::size_t rejected(std::size_t lane) const { return static_cast<std::size_t>(rejected_[lane]); }
 
@@ -105,7 +115,7 @@ class LaneSizes {
       short_ = last_ & (abs(on_grid_ - limit_) > Wide(1e-9 * step_));
       h_ = select(short_, room, nominal);
     } else {
-      planned_ = select(abs(next_) > Wide(max_step_), Wide(forward_ * max_step_), next_);
+      planned_ = select(abs(next_) > longest_, Wide(forward_) * longest_, next_);
       // A remainder below 1 % of h before the limit is absorbed into this step.
       last_ = Wide(forward_) * (Wide(1.01) * planned_ - room) >= Wide(0.0);
       h_ = select(last_, room, planned_);
@@ -240,8 +250,12 @@ class LaneSizes {
   }
 
   static constexpr double safety_of_count = 2;  // steps: the last ones are looked at one by one
+  static constexpr double parts_of_run = 50;
 
-  double forward_, step_, max_step_;
+  double begin_, forward_, step_, max_step_;
+  bool depends_on_time_;
+  Wide longest_;                   // the longest step
+  std::array<double, W> reach_{};  // the greatest distance of a limit from the start of the run
   Controller controller_;
   double max_steps_;
   std::size_t max_rejects_;

@@ -48,7 +48,8 @@ struct RunSettings {
   Options<X> options;  // of one run
   bool keep_events;
   const std::tuple<E...>& events;
-  std::string problem{};  // why no run can begin; empty where they can
+  RunWatcher<X>* watcher = nullptr;  // may be null
+  std::string problem{};             // why no run can begin; empty where they can
 
   [[nodiscard]] double forward() const { return interval.to < interval.from ? -1.0 : 1.0; }
 };
@@ -119,6 +120,11 @@ class RunOfLane {
   [[nodiscard]] bool has_row_before(double end) const {
     const std::vector<double>& times = settings_.options.save.times;
     return next_row_ < times.size() && settings_.forward() * (times[next_row_] - end) < 0;
+  }
+
+  /// Whether somebody wants to see the step to `end`.
+  [[nodiscard]] bool is_watched(double end) const {
+    return settings_.watcher && settings_.watcher->wants(result_.run, end);
   }
 
   /// Goes through the instants of the step that steps() has taken. True where the motion has been changed on the way,
@@ -375,6 +381,16 @@ class RunOfLane {
       state_at(settings_.options.save.times[next_row_++] - steps_.begin(), length, before_);
       result_.rows.push_back(before_);
     }
+    if (is_watched(to)) show(to);
+  }
+  void show(double to) {
+    settings_.watcher->on_piece(result_.run, to, [this](double t, X& x) {
+      if (t == t_) {
+        x = x_;
+      } else {
+        steps_.at(t, x);
+      }
+    });
   }
   void rows_of_instant() {
     const std::vector<double>& times = settings_.options.save.times;
