@@ -2,6 +2,7 @@
 // operation, families in loops, tables, values that are no numbers.
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "native_referee.hpp"
 #include "random_expressions.hpp"
+#include <continuo/symbolic/native/native_compiler.hpp>
 #include <continuo/symbolic/tape/tape_lanes.hpp>
 #include <continuo/symbolic/tape/wide_vectors.hpp>
 
@@ -62,6 +64,44 @@ TEST(TapeLanes, OfFamiliesHaveTheBitsOfEachRunAlone) {
     expect_each_lane_alone(g, expressions, random);
   }
   EXPECT_GT(loops, 20u);
+}
+
+/// The same by machine code, which reads the states from an array of their own.
+void expect_machine_code(Graph& g, const std::vector<NodeId>& expressions, std::mt19937& random,
+                         NativeCompiler& native) {
+  const auto tape = std::make_shared<const Tape>(g, expressions, layout, tables());
+  const std::shared_ptr<LaneCode> code = native.lane_code(tape);
+  ASSERT_NE(code->function(), nullptr) << native.report().trouble;
+  for (int i = 0; i < 10; ++i) {
+    std::vector<TapeLanes> registers(tape->register_count()), states_of(states), outputs(tape->output_count());
+    std::vector<std::vector<double>> values;
+    for (std::size_t lane = 0; lane < TapeLanes::width; ++lane) {
+      values.push_back(random_values(random));
+      for (std::size_t k = 0; k < variables; ++k)
+        (k >= 1 && k <= states ? states_of[k - 1] : registers[k]).set(lane, values.back()[k]);
+    }
+    tape->prepare<TapeLanes>(registers);
+    code->function()(registers.front().numbers.data(), states_of.front().numbers.data(),
+                     outputs.front().numbers.data());
+    for (std::size_t lane = 0; lane < TapeLanes::width; ++lane) {
+      const std::vector<double> alone = evaluated(*tape, values[lane]);
+      for (std::size_t k = 0; k < alone.size(); ++k)
+        ASSERT_EQ(bits(outputs[k][lane]), bits(alone[k])) << "lane " << lane << ", output " << k;
+    }
+  }
+}
+
+TEST(TapeLanes, MachineCodeHasTheBitsOfEachRunAlone) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  for (unsigned seed = 0; seed < 2; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    Graph g;
+    expect_machine_code(g, random_expressions(g, random, 60 + seed * 60), random, *native);
+    expect_machine_code(g, random_family(g, random), random, *native);
+  }
+  EXPECT_EQ(native->report().trouble, "");
 }
 
 }  // namespace

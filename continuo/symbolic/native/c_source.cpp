@@ -148,12 +148,42 @@ std::string_view function_of(Code code) {
   }
 }
 
-std::string operation_text(Code code, const std::array<std::string, 4>& operand) {
-  if (const std::string_view pattern = pattern_of(code); !pattern.empty())
+/// Of the operations that C has for numbers and not for lanes.
+std::string_view choice_of_lanes(Code code) {
+  switch (code) {
+    case Code::select_less:
+      return "select_less";
+    case Code::select_less_equal:
+      return "select_less_equal";
+    case Code::select:
+      return "select_nonzero";
+    case Code::less:
+      return "is_less";
+    case Code::less_equal:
+      return "is_less_equal";
+    case Code::equal:
+      return "is_equal";
+    case Code::not_equal:
+      return "is_not_equal";
+    case Code::logical_and:
+      return "are_both";
+    case Code::logical_or:
+      return "is_either";
+    case Code::logical_not:
+      return "is_not";
+    default:
+      return {};
+  }
+}
+
+std::string operation_text(Code code, const std::array<std::string, 4>& operand, bool in_lanes) {
+  const std::string_view choice = in_lanes ? choice_of_lanes(code) : std::string_view();
+  if (const std::string_view pattern = pattern_of(code); !pattern.empty() && choice.empty())
     return fmt::format(fmt::runtime(pattern), operand[0], operand[1], operand[2], operand[3]);
   std::string arguments = operand[0];
   for (std::size_t k = 1; k < tape::operands(code); ++k) arguments += ", " + operand[k];
-  return fmt::format("{}({})", function_of(code), arguments);
+  if (!choice.empty()) return fmt::format("{}({})", choice, arguments);
+  return fmt::format("{}{}({})", in_lanes ? "each_" : "", function_of(code), arguments);
 }
 
 [[nodiscard]] bool is_primary(std::string_view text) {
@@ -218,6 +248,10 @@ class TapeWriter {
     bool in_loop = false;
   };
 
+  [[nodiscard]] std::string number(double value) const {
+    return options_.in_lanes ? fmt::format("all_lanes({})", number_text(value)) : number_text(value);
+  }
+
   void line(std::string_view what) { text_ += fmt::format("  {}\n", what); }
   void loop(std::size_t count, std::string_view statement) {
     line(fmt::format("for (int i = 0; i < {}; ++i) {}", count, statement));
@@ -245,8 +279,7 @@ class TapeWriter {
 
   void body() {
     std::ranges::fill(values_, Value{});
-    for (const Tape::Constant& constant : tape_.constants_)
-      values_[constant.target] = {number_text(constant.value), true};
+    for (const Tape::Constant& constant : tape_.constants_) values_[constant.target] = {number(constant.value), true};
     if (!options_.time.empty()) values_[0] = {std::string(options_.time), true};
     count_uses(tape_.body_);
     if (!options_.prepared) place_what_loops_read();
@@ -365,9 +398,10 @@ class TapeWriter {
       stable = stable && value.stable;
       operand[k] = function_of(i.code).empty() && !is_table(i) ? bracketed(value.text) : std::move(value.text);
     }
-    std::string text = is_table(i) ? fmt::format("{}{}({})", i.code == Code::interpolate ? "table_" : "slope_of_table_",
-                                                 i.b, operand[0])
-                                   : operation_text(i.code, operand);
+    std::string text = is_table(i)
+                           ? fmt::format("{}{}{}({})", options_.in_lanes ? "each_" : "",
+                                         i.code == Code::interpolate ? "table_" : "slope_of_table_", i.b, operand[0])
+                           : operation_text(i.code, operand, options_.in_lanes);
     if (use.in_loop) {
       line(fmt::format("r[{}] = {};", i.result, text));
       values_[i.result] = {};
@@ -375,7 +409,7 @@ class TapeWriter {
       values_[i.result] = {std::move(text), true};
     } else {
       std::string name = fmt::format("v{}", ++names_);
-      line(fmt::format("const double {} = {};", name, text));
+      line(fmt::format("const {} {} = {};", options_.in_lanes ? "lanes" : "double", name, text));
       values_[i.result] = {std::move(name), true};
     }
   }
@@ -424,7 +458,7 @@ class TapeWriter {
     const auto further = static_cast<std::uint32_t>(series.count - 1);
     for (std::uint32_t j = 0; j < batch.count + further * series.result_step; ++j) values_[batch.result + j] = {};
     const std::string statement = fmt::format("{} = {};", element("r", batch.result, index_of(series.result_step)),
-                                              operation_text(batch.code, operand));
+                                              operation_text(batch.code, operand, options_.in_lanes));
     if (series.count > 1) line(fmt::format("for (int j = 0; j < {}; ++j) {{", series.count));
     text_ += "#pragma GCC ivdep\n";
     loop(batch.count, statement);
@@ -588,6 +622,74 @@ std::string c_helpers(std::string_view functions, std::span<const Table> tables)
     const bool value = calls(functions, fmt::format("table_{}", i));
     const bool slope = calls(functions, fmt::format("slope_of_table_{}", i));
     if (value || slope) text += table_text(tables[i], i, value, slope);
+  }
+  return text;
+}
+
+namespace {
+
+constexpr std::string_view lane_type =
+    "typedef double lanes __attribute__((vector_size(64), aligned(8)));\n"
+    "typedef long long lane_masks __attribute__((vector_size(64), aligned(8)));\n"
+    "static inline lanes all_lanes(double a) { return (lanes){a, a, a, a, a, a, a, a}; }\n"
+    "static inline lanes choose(lane_masks m, lanes a, lanes b) {\n"
+    "  return (lanes)(((lane_masks)a & m) | ((lane_masks)b & ~m));\n"
+    "}\n"
+    "static inline lanes truth(lane_masks m) { return choose(m, all_lanes(1.0), all_lanes(0.0)); }\n";
+
+constexpr Helper lane_choices[] = {
+    {"select_less", "(lanes a, lanes b, lanes c, lanes d) { return choose(a < b, c, d); }"},
+    {"select_less_equal", "(lanes a, lanes b, lanes c, lanes d) { return choose(a <= b, c, d); }"},
+    {"select_nonzero", "(lanes a, lanes b, lanes c) { return choose(a != all_lanes(0.0), b, c); }"},
+    {"is_less", "(lanes a, lanes b) { return truth(a < b); }"},
+    {"is_less_equal", "(lanes a, lanes b) { return truth(a <= b); }"},
+    {"is_equal", "(lanes a, lanes b) { return truth(a == b); }"},
+    {"is_not_equal", "(lanes a, lanes b) { return truth(a != b); }"},
+    {"are_both", "(lanes a, lanes b) { return truth((a != all_lanes(0.0)) & (b != all_lanes(0.0))); }"},
+    {"is_either", "(lanes a, lanes b) { return truth((a != all_lanes(0.0)) | (b != all_lanes(0.0))); }"},
+    {"is_not", "(lanes a) { return truth(a == all_lanes(0.0)); }"},
+    {"each_minimum", "(lanes a, lanes b) { return choose(b < a, b, a); }"},
+    {"each_maximum", "(lanes a, lanes b) { return choose(a < b, b, a); }"},
+    {"each_fabs", "(lanes a) { return (lanes)((lane_masks)a & ~(lane_masks)all_lanes(-0.0)); }"},
+    {"each_sign_of",
+     "(lanes a) {\n"
+     "  return choose(a > all_lanes(0.0), all_lanes(1.0), choose(a < all_lanes(0.0), all_lanes(-1.0), a));\n}"},
+};
+
+/// `NAME(` of the calls of each_NAME in the text that are no choices, each once.
+std::vector<std::string> calls_for_each(std::string_view text) {
+  constexpr std::string_view prefix = "each_";
+  std::vector<std::string> names;
+  for (std::size_t at = text.find(prefix); at != std::string_view::npos; at = text.find(prefix, at + 1)) {
+    const std::string name(text.substr(at + prefix.size(), text.find('(', at) - at - prefix.size()));
+    if (std::ranges::find(names, name) == names.end() &&
+        std::ranges::find(lane_choices, "each_" + name, &Helper::name) == std::end(lane_choices))
+      names.push_back(name);
+  }
+  return names;
+}
+
+bool takes_two(std::string_view function) {
+  constexpr std::array two = {"pow", "atan2", "hypotenuse", "modulo"};
+  return std::ranges::find(two, function) != two.end();
+}
+
+}  // namespace
+
+std::string c_lane_helpers(std::string_view functions) {
+  std::string text(lane_type);
+  for (const Helper& helper : lane_choices)
+    if (calls(functions, std::string(helper.name)))
+      text += fmt::format("static inline lanes {}{}\n", helper.name, helper.text);
+  for (const std::string& name : calls_for_each(functions)) {
+    const bool two = takes_two(name);
+    text += fmt::format(
+        "static inline lanes each_{0}(lanes a{1}) {{\n"
+        "  lanes y;\n"
+        "  for (int i = 0; i < 8; ++i) y[i] = {0}(a[i]{2});\n"
+        "  return y;\n"
+        "}}\n",
+        name, two ? ", lanes b" : "", two ? ", b[i]" : "");
   }
   return text;
 }

@@ -34,6 +34,9 @@ struct CFunctionOptions {
   /// Whether the registers in `r` are those of the tape, with `prepare` done. Else the function puts there what it
   /// needs.
   bool prepared = true;
+  /// Whether registers, variables and outputs have the type `lanes` of c_lane_helpers, a number for each of several
+  /// runs. Then the registers are those of the tape.
+  bool in_lanes = false;
   /// A comment behind the k-th output; null: none.
   std::function<std::string(std::size_t)> output_comment = {};
 };
@@ -45,6 +48,10 @@ struct CFunctionOptions {
 /// The helpers that functions of this text call (`minimum`, `table_3`, ...), with the tables of the tape. To be written
 /// before the functions, once for all tapes of the same tables.
 [[nodiscard]] std::string c_helpers(std::string_view functions, std::span<const Table> tables);
+
+/// The helpers of functions in lanes: the type `lanes` of eight doubles, whatever the processor, and the operations
+/// that are done one lane after the other (`each_sin`, `each_table_3`, ...). Those of c_helpers come before.
+[[nodiscard]] std::string c_lane_helpers(std::string_view functions);
 
 /// Whether the text stays of a size that a compiler takes in seconds: single operations and numbers of tables are few.
 [[nodiscard]] bool is_worth_compiling(const Tape& tape);

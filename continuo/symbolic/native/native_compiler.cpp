@@ -68,24 +68,36 @@ void NativeCompiler::note_trouble(const std::string& what) {
 
 void NativeCompiler::watch(const std::shared_ptr<const Tape>& tape) {
   if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return;
-  if (options_.use == NativeUse::always) {
-    const std::string text = text_of(*tape);
-    if (!load_from_cache(*tape, text)) compile(*tape, text, {});
-    return;
-  }
+  if (options_.use == NativeUse::always) return make_now({tape}, {});
   tape->notify_of_use(operations_before_cache,
                       [compiler = weak_from_this(), of = std::weak_ptr(tape)](std::uint64_t operations) {
                         const auto self = compiler.lock();
                         const auto used = of.lock();
-                        return self && used ? self->after(operations, used) : 0;
+                        return self && used ? self->after(operations, {used}) : 0;
                       });
 }
 
-std::uint64_t NativeCompiler::after(std::uint64_t operations, const std::shared_ptr<const Tape>& tape) {
+std::shared_ptr<LaneCode> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape) {
+  auto lanes = std::make_shared<LaneCode>();
+  if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return lanes;
+  if (options_.use == NativeUse::always) {
+    make_now({tape, lanes}, {});
+    return lanes;
+  }
+  lanes->notify_ = [compiler = weak_from_this(), tape, of = std::weak_ptr(lanes)](std::uint64_t operations) {
+    const auto self = compiler.lock();
+    const auto used = of.lock();
+    return self && used ? self->after(operations, {tape, used}) : 0;
+  };
+  lanes->wanted_ = operations_before_cache;
+  return lanes;
+}
+
+std::uint64_t NativeCompiler::after(std::uint64_t operations, const Wanted& wanted) {
   if (operations < operations_before_compiler)
-    return load_from_cache(*tape, text_of(*tape)) ? 0 : operations_before_compiler;
+    return load_from_cache(wanted, text_of(wanted)) ? 0 : operations_before_compiler;
   const std::lock_guard lock(mutex_);
-  waiting_.push_back(tape);
+  waiting_.push_back(wanted);
   if (!worker_.joinable()) worker_ = std::jthread([this](std::stop_token stop) { work(std::move(stop)); });
   wake_.notify_all();
   return 0;
@@ -93,27 +105,35 @@ std::uint64_t NativeCompiler::after(std::uint64_t operations, const std::shared_
 
 void NativeCompiler::work(std::stop_token stop) {
   for (;;) {
-    std::shared_ptr<const Tape> tape;
+    Wanted wanted;
     {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [&] { return !waiting_.empty(); }) || stop.stop_requested()) return;
-      tape = std::move(waiting_.front());
+      wanted = std::move(waiting_.front());
       waiting_.pop_front();
     }
-    const std::string text = text_of(*tape);
-    if (!load_from_cache(*tape, text)) compile(*tape, text, stop);
+    make_now(wanted, stop);
   }
 }
 
-std::string NativeCompiler::text_of(const Tape& tape) const {
+void NativeCompiler::make_now(const Wanted& wanted, std::stop_token stop) {
+  const std::string text = text_of(wanted);
+  if (!load_from_cache(wanted, text)) compile(wanted, text, std::move(stop));
+}
+
+std::string NativeCompiler::text_of(const Wanted& wanted) const {
+  const Tape& tape = *wanted.tape;
   const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
-  const std::string function =
-      c_function(tape, {.signature = "void evaluate(double *restrict r, const double *restrict x, double *restrict y)",
-                        .arrays = states});
+  const std::string_view type = wanted.lanes ? "lanes" : "double";
+  const std::string signature =
+      fmt::format("void evaluate({0} *restrict r, const {0} *restrict x, {0} *restrict y)", type);
+  std::string function =
+      c_function(tape, {.signature = signature, .arrays = states, .in_lanes = wanted.lanes != nullptr});
+  if (wanted.lanes) function = c_lane_helpers(function) + function;
   return std::string(heading) + c_helpers(function, tape.tables()) + function;
 }
 
-bool NativeCompiler::load_from_cache(const Tape& tape, const std::string& text) {
+bool NativeCompiler::load_from_cache(const Wanted& wanted, const std::string& text) {
   std::call_once(found_, [&] {
     compiler_ = find_c_compiler();
     cache_.emplace(options_.cache);
@@ -121,13 +141,13 @@ bool NativeCompiler::load_from_cache(const Tape& tape, const std::string& text) 
   });
   const auto file = cache_->find(compiler_->identity + "\n" + text);
   if (!file) return false;
-  load(tape, *file);
+  load(wanted, *file);
   const std::lock_guard lock(mutex_);
   ++report_.loaded;
   return true;
 }
 
-void NativeCompiler::compile(const Tape& tape, const std::string& text, std::stop_token stop) {
+void NativeCompiler::compile(const Wanted& wanted, const std::string& text, std::stop_token stop) {
   const TemporaryFolder folder;
   if (folder.path().empty()) return note_trouble("no folder for temporary files can be made");
   if (const Status status = check_private(folder.path()); !status) return note_trouble(status.message);
@@ -140,18 +160,18 @@ void NativeCompiler::compile(const Tape& tape, const std::string& text, std::sto
   if (const Status status = compiler_->compile(source, made, std::move(stop)); !status)
     return note_trouble(status.message);
   cache_->keep(compiler_->identity + "\n" + text, made);
-  load(tape, made);
+  load(wanted, made);
   const std::lock_guard lock(mutex_);
   ++report_.compiled;
 }
 
-void NativeCompiler::load(const Tape& tape, const fs::path& shared_object) {
+void NativeCompiler::load(const Wanted& wanted, const fs::path& shared_object) {
   void* const opened = dlopen(shared_object.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (opened == nullptr) return note_trouble(fmt::format("{}: {}", shared_object.string(), dlerror()));
   std::shared_ptr<void> code(opened, [](void* handle) { dlclose(handle); });
   const auto function = reinterpret_cast<NativeEvaluation>(dlsym(opened, "evaluate"));
   if (function == nullptr) return note_trouble(fmt::format("{}: no function in it", shared_object.string()));
-  tape.use_native(function, std::move(code));
+  wanted.lanes ? wanted.lanes->use(function, std::move(code)) : wanted.tape->use_native(function, std::move(code));
 }
 
 }  // namespace continuo::model

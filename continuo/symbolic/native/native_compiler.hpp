@@ -23,6 +23,7 @@
 
 #include <continuo/status/result.hpp>
 #include <continuo/symbolic/native/c_compiler.hpp>
+#include <continuo/symbolic/native/lane_code.hpp>
 #include <continuo/symbolic/native/native_cache.hpp>
 #include <continuo/symbolic/tape/tape.hpp>
 
@@ -50,6 +51,10 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   /// With `always` the tape is machine code when this returns, or `report` says why not.
   void watch(const std::shared_ptr<const Tape>& tape);
 
+  /// The machine code of the tape for several runs at once, to be counted on and asked for: with `always` it is there
+  /// when this returns.
+  [[nodiscard]] std::shared_ptr<LaneCode> lane_code(const std::shared_ptr<const Tape>& tape);
+
   struct Report {
     std::size_t compiled = 0;  // tapes, by the compiler
     std::size_t loaded = 0;    // tapes, from the cache
@@ -58,12 +63,18 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   [[nodiscard]] Report report() const;
 
  private:
-  /// What the tape has done so far decides what is tried next.
-  [[nodiscard]] std::uint64_t after(std::uint64_t operations, const std::shared_ptr<const Tape>& tape);
-  [[nodiscard]] std::string text_of(const Tape& tape) const;
-  [[nodiscard]] bool load_from_cache(const Tape& tape, const std::string& text);
-  void compile(const Tape& tape, const std::string& text, std::stop_token stop);
-  void load(const Tape& tape, const std::filesystem::path& shared_object);
+  /// A tape whose machine code is wanted, and for several runs at once who gets it; else the tape does.
+  struct Wanted {
+    std::shared_ptr<const Tape> tape;
+    std::shared_ptr<LaneCode> lanes{};
+  };
+  /// What has been done so far decides what is tried next.
+  [[nodiscard]] std::uint64_t after(std::uint64_t operations, const Wanted& wanted);
+  void make_now(const Wanted& wanted, std::stop_token stop);
+  [[nodiscard]] std::string text_of(const Wanted& wanted) const;
+  [[nodiscard]] bool load_from_cache(const Wanted& wanted, const std::string& text);
+  void compile(const Wanted& wanted, const std::string& text, std::stop_token stop);
+  void load(const Wanted& wanted, const std::filesystem::path& shared_object);
   void note_trouble(const std::string& what);
   void work(std::stop_token stop);
 
@@ -73,7 +84,7 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   std::once_flag found_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::deque<std::shared_ptr<const Tape>> waiting_;
+  std::deque<Wanted> waiting_;
   Report report_;
   std::jthread worker_;  // the last member: it ends before what it uses
 };
