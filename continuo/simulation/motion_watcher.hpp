@@ -19,7 +19,7 @@ class MotionWatcher {
   using At = std::function<void(double t, X& x)>;
 
   virtual ~MotionWatcher() = default;
-  /// The motion begins at plan.from, in the state x.
+  /// The motion begins at plan.from, in the state x. It may be made twice, and then it begins anew.
   virtual void begin(const Plan& plan, const X& x) = 0;
   /// The motion is known from where it was known before up to `to`.
   virtual void on_piece(double to, const At& at) = 0;

@@ -38,8 +38,8 @@ bool holds(Relation relation, double value, double expected, double tolerance) {
 
 class Judge {
  public:
-  Judge(const Model& model, const Run& run, const RunRecorder& recorder)
-      : model_(model), run_(run), recorder_(recorder) {}
+  Judge(const Model& model, const Run& run, std::span<const SampledState> samples, std::span<const Extremes> extremes)
+      : model_(model), run_(run), samples_(samples), extremes_(extremes) {}
 
   std::vector<CheckResult> results() {
     std::vector<CheckResult> all;
@@ -64,7 +64,7 @@ class Judge {
   }
 
   CheckResult always(const Check& check, CheckResult r) {
-    const Extremes& e = recorder_.extremes()[always_++];
+    const Extremes& e = extremes_[always_++];
     const bool upper = check.relation == Relation::less || check.relation == Relation::less_equal;
     const bool lower = check.relation == Relation::greater || check.relation == Relation::greater_equal;
     const double worst = upper || (!lower && std::abs(e.high) > std::abs(e.low)) ? e.high : e.low;
@@ -123,8 +123,13 @@ class Judge {
     }
   }
 
+  const SampledState* sampled_at(double t) const {
+    const auto found = std::ranges::find(samples_, t, &SampledState::t);
+    return found == samples_.end() || found->x.empty() ? nullptr : &*found;
+  }
+
   bool place_at(std::vector<double>& variables, double t, std::string& message) const {
-    if (const SampledState* sample = recorder_.sample(t)) {
+    if (const SampledState* sample = sampled_at(t)) {
       place(variables, t, sample->x);
       return true;
     }
@@ -169,7 +174,8 @@ class Judge {
 
   const Model& model_;
   const Run& run_;
-  const RunRecorder& recorder_;
+  std::span<const SampledState> samples_;
+  std::span<const Extremes> extremes_;
   std::size_t always_ = 0;
 };
 
@@ -187,7 +193,12 @@ std::vector<double> sample_times(const Model& model, const Plan& plan) {
 }
 
 std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder) {
-  return Judge(model, run, recorder).results();
+  return judge(model, run, recorder.samples(), recorder.extremes());
+}
+
+std::vector<CheckResult> judge(const Model& model, const Run& run, std::span<const SampledState> samples,
+                               std::span<const Extremes> extremes) {
+  return Judge(model, run, samples, extremes).results();
 }
 
 }  // namespace continuo::model

@@ -1,6 +1,7 @@
 // continuo/simulation/drive/run_checks.hpp
 // The checks of a model held against a run. Internal to simulate.
 #pragma once
+#include <span>
 #include <vector>
 
 #include <continuo/language/model.hpp>
@@ -13,5 +14,9 @@ namespace continuo::model {
 
 /// Every check's result; `recorder` has given its rows to the run already.
 [[nodiscard]] std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder);
+/// The same for a run whose last row is the only one that is known, with the states at the times that checks ask for,
+/// and the extremes of what is to hold always.
+[[nodiscard]] std::vector<CheckResult> judge(const Model& model, const Run& run, std::span<const SampledState> samples,
+                                             std::span<const Extremes> extremes);
 
 }  // namespace continuo::model

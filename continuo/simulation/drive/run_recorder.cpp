@@ -209,11 +209,6 @@ double RunRecorder::next_sample() const {
   return next_sample_ < samples_.size() ? samples_[next_sample_].t : std::numeric_limits<double>::infinity();
 }
 
-const SampledState* RunRecorder::sample(double t) const {
-  const auto found = std::ranges::find(samples_, t, &SampledState::t);
-  return found == samples_.end() || found->x.empty() ? nullptr : &*found;
-}
-
 void RunRecorder::give(Run& run) {
   if (energy_ && !extremes_.empty()) {
     const Extremes& e = extremes_.front();

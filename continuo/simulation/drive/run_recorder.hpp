@@ -77,7 +77,6 @@ class RunRecorder {
   /// When the next sample is wanted, infinity after the last; how many came before.
   [[nodiscard]] double next_sample() const;
   [[nodiscard]] std::size_t samples_taken() const { return next_sample_; }
-  [[nodiscard]] const SampledState* sample(double t) const;
   [[nodiscard]] std::span<const Extremes> extremes() const { return extremes_; }
   /// Whether who gets the rows wants no more of them.
   [[nodiscard]] bool is_refused() const { return is_refused_; }

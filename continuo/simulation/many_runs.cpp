@@ -1,0 +1,213 @@
+// Finds which runs can go together, and judges each when it has ended.
+#include <algorithm>
+#include <utility>
+
+#include <continuo/simulation/drive/run_checks.hpp>
+#include <continuo/simulation/many_runs.hpp>
+#include <continuo/simulation/stepping.hpp>
+#include <continuo/simulation/together/integrate_together.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+using X = ModelSystem::X;
+
+/// A run of many, planned.
+struct Planned {
+  std::optional<Plan> plan{};  // none where it cannot begin: `problems` say why
+  std::vector<Diagnostic> problems{};
+  std::vector<SampledState> samples{};  // at the times that checks ask for
+  std::size_t next_sample = 0;
+};
+
+bool agree(const Plan& a, const Plan& b) {
+  return a.method == b.method && a.rtol == b.rtol && a.rtol_each == b.rtol_each && a.atol == b.atol &&
+         a.step == b.step && a.max_step == b.max_step && a.max_steps == b.max_steps && a.from == b.from && a.to == b.to;
+}
+
+bool agree(const Experiment& a, const Experiment& b) {
+  return a.max_step == b.max_step && a.max_steps == b.max_steps && a.interrupt == b.interrupt;
+}
+
+bool is_plain(const Experiment& experiment) {
+  return !experiment.estimate_error && !experiment.doubts && !experiment.progress;
+}
+
+/// A run that stiffness slows may be ended by `simulate` before its limit of steps, but not earlier than this
+/// (solve/steps/step_budget.hpp). One that takes more steps is made alone.
+std::size_t steps_together(const Plan& plan, std::size_t limit) {
+  constexpr std::size_t first_probe = 1000, windows = 50;
+  return plan.step > 0 ? limit : std::min(limit, std::max(first_probe, limit / windows));
+}
+
+/// The runs [first, last) go together.
+class Together final : public RunWatcher<X> {
+ public:
+  Together(const std::shared_ptr<const ModelProgram>& program, const std::shared_ptr<LaneCode>& code,
+           std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
+           std::span<Planned> planned, const OnJudged& done)
+      : program_(program), code_(code), experiments_(experiments), watchers_(watchers), planned_(planned), done_(done) {
+    run_.motion.states = program_->model.states.size();
+    run_.motion.columns.resize(1 + run_.motion.states);
+  }
+
+  /// Makes them. False where no more are wanted, or they were interrupted.
+  [[nodiscard]] bool run(std::size_t first, std::size_t last) {
+    first_ = first;
+    goes_on_ = true;
+    if (!equations_) equations_.emplace(*program_, code_);
+    for (std::size_t i = first; i < last; ++i) begin(i);
+    const Plan& plan = *planned_[first].plan;
+    integrate_together(plan.method, {.equations = *equations_,
+                                     .interval = {plan.from, plan.to},
+                                     .options = options(first),
+                                     .count = last - first,
+                                     .start = [this](std::size_t run) { return start(run); }});
+    const std::atomic<bool>* interrupt = experiments_[first].interrupt;
+    return goes_on_ && !(interrupt && interrupt->load());
+  }
+
+  /// Makes one by `simulate`.
+  [[nodiscard]] bool run_alone(std::size_t i) {
+    Simulated simulated = simulate(program_, experiments_[i], {.watcher = watcher(i)});
+    JudgedRun judged{.outcome = {}, .checks = {}, .diagnostics = std::move(simulated.diagnostics)};
+    if (simulated.run) {
+      judged.outcome = std::move(simulated.run->outcome);
+      judged.checks = std::move(simulated.run->checks);
+    }
+    return done_(i, std::move(judged));
+  }
+
+  bool wants(std::size_t run, double to) override {
+    const std::size_t i = first_ + run;
+    const Planned& one = planned_[i];
+    return watcher(i) || (one.next_sample < one.samples.size() && one.samples[one.next_sample].t <= to);
+  }
+  void on_piece(std::size_t run, double to, const std::function<void(double t, X& x)>& at) override {
+    const std::size_t i = first_ + run;
+    Planned& one = planned_[i];
+    for (; one.next_sample < one.samples.size() && one.samples[one.next_sample].t <= to; ++one.next_sample) {
+      SampledState& sample = one.samples[one.next_sample];
+      sample.x.resize(run_.motion.states);
+      at(sample.t, sample.x);
+    }
+    if (MotionWatcher* seeing = watcher(i)) seeing->on_piece(to, at);
+  }
+
+ private:
+  [[nodiscard]] MotionWatcher* watcher(std::size_t i) const { return watchers_.empty() ? nullptr : watchers_[i]; }
+
+  [[nodiscard]] X first_state(std::size_t i) const {
+    const Model& model = program_->model;
+    const auto begin = planned_[i].plan->variables.begin() + model.layout.states;
+    return {begin, begin + static_cast<std::ptrdiff_t>(model.states.size())};
+  }
+  [[nodiscard]] RunStart<X, X> start(std::size_t run) const {
+    const std::size_t i = first_ + run;
+    return {first_state(i), LaneEquations::parameters(i + 1, planned_[i].plan->variables)};
+  }
+
+  void begin(std::size_t i) {
+    Planned& one = planned_[i];
+    const X x = first_state(i);
+    for (const double t : sample_times(program_->model, *one.plan)) one.samples.push_back({t, {}});
+    for (; one.next_sample < one.samples.size() && one.samples[one.next_sample].t <= one.plan->from; ++one.next_sample)
+      if (one.samples[one.next_sample].t == one.plan->from) one.samples[one.next_sample].x = x;
+    if (MotionWatcher* seeing = watcher(i)) seeing->begin(*one.plan, x);
+  }
+
+  [[nodiscard]] EnsembleOptions<X, X> options(std::size_t first) {
+    const Plan& plan = *planned_[first].plan;
+    const Options<X> one = integration_of(program_, plan, experiments_[first]).options;
+    EnsembleOptions<X, X> options;
+    options.rtol = one.rtol;
+    options.atol = one.atol;
+    options.rtol_each = one.rtol_each;
+    options.atol_each = one.atol_each;
+    options.step = one.step;
+    options.max_step = one.max_step;
+    options.max_steps = steps_together(plan, one.max_steps);
+    options.interrupt = one.interrupt;
+    options.threads = 1;
+    options.watcher = this;
+    options.finished = [this](const RunResult<X, X>& result) { return goes_on_ = goes_on_ && finish(result); };
+    return options;
+  }
+
+  [[nodiscard]] bool finish(const RunResult<X, X>& result) {
+    const std::size_t i = first_ + result.run;
+    const Ending ending = result.outcome.ending;
+    if (!succeeded(ending) && ending != Ending::interrupted) return run_alone(i);
+    run_.plan = std::move(*planned_[i].plan);
+    run_.outcome = result.outcome;
+    run_.motion.values.assign(1, result.outcome.t);
+    run_.motion.values.insert(run_.motion.values.end(), result.x.begin(), result.x.end());
+    JudgedRun judged{
+        .outcome = result.outcome, .checks = judge(program_->model, run_, planned_[i].samples, {}), .diagnostics = {}};
+    if (!succeeded(ending)) judged.diagnostics.push_back(failure(*program_, run_));
+    return done_(i, std::move(judged));
+  }
+
+  const std::shared_ptr<const ModelProgram>& program_;
+  const std::shared_ptr<LaneCode>& code_;
+  std::optional<LaneEquations> equations_;
+  std::span<const Experiment> experiments_;
+  std::span<MotionWatcher* const> watchers_;
+  std::span<Planned> planned_;
+  const OnJudged& done_;
+  std::size_t first_ = 0;
+  bool goes_on_ = true;
+  Run run_;  // with what differs from run to run put in
+};
+
+/// The end of the runs from `first` on that agree with that one.
+std::size_t end_of_group(std::span<const Planned> planned, std::span<const Experiment> experiments, std::size_t first) {
+  const Planned& one = planned[first];
+  if (!one.plan || !has_lanes(one.plan->method) || !is_plain(experiments[first]) || one.plan->from == one.plan->to)
+    return first + 1;
+  std::size_t last = first + 1;
+  while (last < planned.size() && planned[last].plan && agree(*one.plan, *planned[last].plan) &&
+         is_plain(experiments[last]) && agree(experiments[first], experiments[last]))
+    ++last;
+  return last;
+}
+
+// With more of them there is enough to do at once in a run alone, and eight runs do not fit the cache (measured: chains
+// of N equations by rk4).
+constexpr std::size_t most_states_together = 64;
+
+bool is_plain_motion(const ModelProgram& program) {
+  const Model& model = program.model;
+  const auto asks_for_extremes = [](const Check& check) {
+    return check.measure == Measure::always || check.measure == Measure::energy_drift;
+  };
+  if (model.has_world() || model.needs_boundary_solver() || model.needs_dae_solver()) return false;
+  if (model.states.empty() || model.states.size() > most_states_together) return false;
+  return model.modes.size() == 1 && model.events.empty() && model.schedule.empty() && program.step_inputs.empty() &&
+         std::ranges::all_of(program.switches, [](const SwitchedEquations& one) { return one.empty(); }) &&
+         std::ranges::none_of(model.checks, asks_for_extremes);
+}
+
+}  // namespace
+
+ManyRuns::ManyRuns(std::shared_ptr<const ModelProgram> program)
+    : program_(std::move(program)), can_go_together_(is_plain_motion(*program_)) {
+  if (can_go_together_ && program_->model.native)
+    code_ = program_->model.native->lane_code(program_->derivatives.front());
+}
+
+void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
+                    const OnJudged& done) const {
+  std::vector<Planned> planned(experiments.size());
+  for (std::size_t i = 0; can_go_together_ && i < experiments.size(); ++i)
+    planned[i].plan = plan_run(*program_, experiments[i], planned[i].problems);
+  Together runs(program_, code_, experiments, watchers, planned, done);
+  for (std::size_t first = 0, last = 0; first < experiments.size(); first = last) {
+    last = can_go_together_ ? end_of_group(planned, experiments, first) : first + 1;
+    if (!(last > first + 1 ? runs.run(first, last) : runs.run_alone(first))) return;
+  }
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,36 @@
+// Runs of a model in the lanes of registers, by an explicit Runge-Kutta method. Internal to ManyRuns.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <continuo/ensembles/ensemble_options.hpp>
+#include <continuo/ensembles/run_start.hpp>
+#include <continuo/simulation/together/lane_equations.hpp>
+
+namespace continuo::model {
+
+/// What the runs have in common, and where each begins.
+struct TogetherRuns {
+  using X = std::vector<double>;
+
+  const LaneEquations& equations;
+  Interval<double> interval;
+  EnsembleOptions<X, X> options;
+  std::size_t count;
+  std::function<RunStart<X, X>(std::size_t run)> start;
+};
+
+/// Whether there are lanes for this method.
+[[nodiscard]] bool has_lanes(std::string_view method);
+
+/// Makes the runs on this thread; options.finished gets the results.
+void integrate_together(std::string_view method, const TogetherRuns& runs);
+
+/// For the method M; each is instantiated in one of the integrate_together_*.cpp.
+template <class M>
+void integrate_together_by(const TogetherRuns& runs);
+
+}  // namespace continuo::model
