@@ -84,9 +84,13 @@ void KeptValues::begin(const model::Plan& plan, const X& x) {
     evaluation_.set(input.variable, input.table.value(plan.from));
   begin_ = from_ = plan.from;
   x_ = x;
+  std::ranges::fill(integrals_, 0.0);
+  std::ranges::fill(sizes_, 0.0);
+  std::ranges::fill(next_, std::size_t{0});
   const auto start = evaluate(plan.from, x);
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const SweepKeep& keep = kept_.keeps_[k];
+    std::ranges::fill(values_[k], not_there);
     if (keep.kind != SweepKeep::Kind::series) {
       values_[k].front() = start[k];
       continue;

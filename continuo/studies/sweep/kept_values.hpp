@@ -40,7 +40,7 @@ class KeptValues final : public model::MotionWatcher {
   /// `kept` must outlive this object.
   explicit KeptValues(const KeptNodes& kept);
 
-  /// The motion begins.
+  /// The motion begins; what was seen before is forgotten.
   void begin(const model::Plan& plan, const X& x) override;
   /// Looks at a piece of the motion.
   void on_piece(double to, const At& at) override;

@@ -104,6 +104,7 @@ Result<PreparedSweep> PreparedSweep::create(model::Model model, model::Experimen
   made.plan_ = model.sweep;
   for (const SweepKeep& keep : made.plan_->keeps) made.width_ += keep.width();
   made.readable_ = readable(std::move(model));
+  made.many_ = std::make_shared<const model::ManyRuns>(made.readable_.program);
   made.experiment_ = std::move(experiment);
   made.experiment_.keep_rows = false;
   made.experiment_.progress = nullptr;
@@ -167,14 +168,14 @@ std::optional<PreparedSweep::Readable> PreparedSweep::read_anew(const model::Exp
   return std::nullopt;
 }
 
-std::vector<double> PreparedSweep::kept_of(const Readable& readable, const model::Run& run,
+std::vector<double> PreparedSweep::kept_of(const Readable& readable, std::span<const model::CheckResult> checks,
                                            const KeptValues& watched) const {
   std::vector<double> kept;
   kept.reserve(width_);
   std::size_t reading = 0, seen = 0;
   for (const SweepKeep& keep : readable.program->model.sweep->keeps) {
     if (keep.kind == SweepKeep::Kind::reading) {
-      const model::CheckResult& result = run.checks[reading++];
+      const model::CheckResult& result = checks[reading++];
       kept.push_back(result.evaluated ? result.value : no_value);
     } else {
       const auto values = watched.of(seen++);
@@ -185,9 +186,20 @@ std::vector<double> PreparedSweep::kept_of(const Readable& readable, const model
   return kept;
 }
 
+SweepOutcome PreparedSweep::nothing() const {
+  return {.ending = Ending::invalid_input, .t = no_value, .kept = std::vector(width_, no_value), .message = {}};
+}
+
+void PreparedSweep::take(const Readable& readable, const Outcome<double>& end,
+                         std::span<const model::CheckResult> checks, const KeptValues& watched,
+                         SweepOutcome& outcome) const {
+  outcome.ending = end.ending;
+  outcome.t = end.t;
+  if (succeeded(end.ending)) outcome.kept = kept_of(readable, checks, watched);
+}
+
 SweepOutcome PreparedSweep::run(std::uint64_t number) const {
-  SweepOutcome outcome{.ending = Ending::invalid_input, .t = no_value, .kept = {}, .message = {}};
-  outcome.kept.assign(width_, no_value);
+  SweepOutcome outcome = nothing();
   const model::Experiment asked = experiment(number);
   const auto anew = decides_size_ ? read_anew(asked, outcome) : std::nullopt;
   if (decides_size_ && !anew) return outcome;
@@ -204,16 +216,34 @@ SweepOutcome PreparedSweep::run(std::uint64_t number) const {
   }
   outcome.message = first_error(simulated.diagnostics);
   if (!simulated.run) return outcome;
-  outcome.ending = simulated.run->outcome.ending;
-  outcome.t = simulated.run->outcome.t;
-  if (!succeeded(outcome.ending)) return outcome;
-  if (!is_shown) {
+  take(used, simulated.run->outcome, simulated.run->checks, watched, outcome);
+  if (succeeded(outcome.ending) && !is_shown) {
+    outcome.kept.assign(width_, no_value);
     outcome.ending = Ending::cannot_continue;
     outcome.message = "the motion between its rows cannot be seen: keep values at times or events instead";
-    return outcome;
   }
-  outcome.kept = kept_of(used, *simulated.run, watched);
   return outcome;
+}
+
+void PreparedSweep::run_each(std::span<const std::uint64_t> runs, const OnOutcome& done) const {
+  if (!goes_together()) {
+    for (const std::uint64_t number : runs)
+      if (!done(run(number))) return;
+    return;
+  }
+  std::vector<model::Experiment> experiments;
+  std::vector<KeptValues> watched(runs.size(), KeptValues(*readable_.nodes));
+  std::vector<model::MotionWatcher*> watchers;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    experiments.push_back(experiment(runs[i]));
+    if (!readable_.nodes->empty()) watchers.push_back(&watched[i]);
+  }
+  many_->make(experiments, watchers, [&](std::size_t i, const model::JudgedRun& judged) {
+    SweepOutcome outcome = nothing();
+    outcome.message = first_error(judged.diagnostics);
+    if (judged.outcome) take(readable_, *judged.outcome, judged.checks, watched[i], outcome);
+    return done(std::move(outcome));
+  });
 }
 
 std::string PreparedSweep::identity() const {

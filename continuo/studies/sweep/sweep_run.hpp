@@ -6,13 +6,16 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <continuo/language/sweep.hpp>
 #include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/many_runs.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/status/result.hpp>
 #include <continuo/studies/sweep/distribution.hpp>
@@ -57,6 +60,12 @@ class PreparedSweep {
   [[nodiscard]] bool decides_size() const { return decides_size_; }
   /// Makes the run.
   [[nodiscard]] SweepOutcome run(std::uint64_t run) const;
+  /// Gets the outcomes of runs in their order; returns whether to go on.
+  using OnOutcome = std::function<bool(SweepOutcome outcome)>;
+  /// Makes these runs to the same bits, several at once where the model can (many_runs.hpp).
+  void run_each(std::span<const std::uint64_t> runs, const OnOutcome& done) const;
+  /// Whether it can.
+  [[nodiscard]] bool goes_together() const { return !decides_size_ && many_->can_go_together(); }
 
   /// A text that is the same for sweeps with the same results: model, tables, values, experiment.
   [[nodiscard]] std::string identity() const;
@@ -78,11 +87,15 @@ class PreparedSweep {
   [[nodiscard]] static Readable readable(model::Model model);
   [[nodiscard]] Status add_dimensions();
   [[nodiscard]] std::optional<Readable> read_anew(const model::Experiment& experiment, SweepOutcome& outcome) const;
-  [[nodiscard]] std::vector<double> kept_of(const Readable& readable, const model::Run& run,
+  [[nodiscard]] SweepOutcome nothing() const;
+  void take(const Readable& readable, const Outcome<double>& end, std::span<const model::CheckResult> checks,
+            const KeptValues& watched, SweepOutcome& outcome) const;
+  [[nodiscard]] std::vector<double> kept_of(const Readable& readable, std::span<const model::CheckResult> checks,
                                             const KeptValues& watched) const;
 
   std::shared_ptr<const model::SweepPlan> plan_;
   Readable readable_;
+  std::shared_ptr<const model::ManyRuns> many_;
   model::Experiment experiment_;
   std::vector<Dimension> dimensions_;
   std::optional<SweepDesign> design_;  // none of a grid

@@ -11,20 +11,22 @@
 namespace continuo::studies {
 namespace {
 
-constexpr std::size_t most_waiting = 64;  // chunks that are ahead of their turn
+constexpr std::size_t most_waiting = 64;  // times as many chunks as a thread takes at once may be ahead of their turn
+constexpr std::uint64_t runs_at_once = 256;  // where runs can go together
+constexpr std::size_t turns_left = 4;        // of each thread, so that none is left with much at the end
 
 /// What all threads share: which chunk is next, and whose turn it is.
 class Hands {
  public:
   Hands(const PreparedSweep& sweep, const SweepIdentity& identity, const SweepWork& work)
-      : sweep_(sweep), identity_(identity), work_(work) {}
+      : sweep_(sweep), identity_(identity), work_(work) {
+    if (sweep.goes_together())
+      at_once_ = static_cast<std::size_t>(std::max<std::uint64_t>(1, runs_at_once / identity.per_chunk()));
+  }
 
   void go() {
-    while (const auto place = next()) {
-      auto made = run_chunk(sweep_, identity_, work_.chunks[*place], work_.interrupt, [this] { count(); });
-      if (!made) break;
-      hand_on(*place, *std::move(made));
-    }
+    for (auto places = next(); !places.empty(); places = next())
+      if (!make(places)) break;
     const std::scoped_lock lock(mutex_);
     turned_.notify_all();
   }
@@ -38,17 +40,41 @@ class Hands {
  private:
   bool is_stopped() const { return !status_ || (work_.interrupt && work_.interrupt->load()); }
 
-  std::optional<std::size_t> next() {
+  /// The next places in the list of chunks that nobody has taken; none where all are.
+  std::vector<std::size_t> next() {
     std::unique_lock lock(mutex_);
     // Whose turn it is has been begun by another thread, which does not wait here.
-    turned_.wait(lock, [&] { return is_stopped() || !work_.in_order || next_ < turn_ + most_waiting; });
-    if (is_stopped()) return std::nullopt;
-    const std::uint64_t place = work_.take ? work_.take() : next_;
-    is_all_taken_ = place >= work_.chunks.size();
-    if (is_all_taken_) return std::nullopt;
-    ++taken_;
-    if (!work_.take) ++next_;
-    return static_cast<std::size_t>(place);
+    turned_.wait(lock, [&] { return is_stopped() || !work_.in_order || next_ < turn_ + most_waiting * at_once_; });
+    std::vector<std::size_t> places;
+    for (std::size_t wanted = 1; !is_stopped() && places.size() < wanted;) {
+      const std::uint64_t place = work_.take ? work_.take() : next_++;
+      is_all_taken_ = place >= work_.chunks.size();
+      if (is_all_taken_) break;
+      places.push_back(static_cast<std::size_t>(place));
+      const std::size_t left = work_.chunks.size() - places.front();
+      wanted = std::clamp<std::size_t>(left / (turns_left * std::max<std::size_t>(work_.threads, 1)), 1, at_once_);
+    }
+    taken_ += places.size();
+    return places;
+  }
+
+  /// Makes these chunks and hands each on when it is whole. False where they were interrupted.
+  bool make(const std::vector<std::size_t>& places) {
+    std::vector<std::uint64_t> runs;
+    for (const std::size_t place : places)
+      for (std::uint64_t i = 0; i < identity_.size(work_.chunks[place]); ++i)
+        runs.push_back(identity_.first_run(work_.chunks[place]) + i);
+    std::size_t whole = 0;
+    std::vector<SweepOutcome> made;
+    if (work_.interrupt && work_.interrupt->load()) return false;
+    sweep_.run_each(runs, [&](SweepOutcome outcome) {
+      if (outcome.ending == Ending::interrupted) return false;
+      made.push_back(std::move(outcome));
+      count();
+      if (made.size() == identity_.size(work_.chunks[places[whole]])) hand_on(places[whole++], std::exchange(made, {}));
+      return !(work_.interrupt && work_.interrupt->load());
+    });
+    return whole == places.size();
   }
 
   void count() {
@@ -82,6 +108,7 @@ class Hands {
   const SweepWork& work_;
   std::mutex mutex_, watching_;
   std::condition_variable turned_;
+  std::size_t at_once_ = 1;  // chunks
   std::size_t next_ = 0, turn_ = 0, taken_ = 0, delivered_ = 0;
   bool is_all_taken_ = false;
   std::uint64_t runs_ = 0;
@@ -90,21 +117,6 @@ class Hands {
 };
 
 }  // namespace
-
-std::optional<std::vector<SweepOutcome>> run_chunk(const PreparedSweep& sweep, const SweepIdentity& identity,
-                                                   std::uint64_t chunk, const std::atomic<bool>* interrupt,
-                                                   const std::function<void()>& on_run) {
-  std::vector<SweepOutcome> made;
-  const std::uint64_t first = identity.first_run(chunk), size = identity.size(chunk);
-  made.reserve(static_cast<std::size_t>(size));
-  for (std::uint64_t i = 0; i < size; ++i) {
-    if (interrupt && interrupt->load()) return std::nullopt;
-    made.push_back(sweep.run(first + i));
-    if (made.back().ending == Ending::interrupted) return std::nullopt;
-    if (on_run) on_run();
-  }
-  return made;
-}
 
 Status run_chunks(const PreparedSweep& sweep, const SweepIdentity& identity, const SweepWork& work) {
   Hands hands(sweep, identity, work);

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +15,6 @@
 #include <continuo/studies/sweep/sweep_run.hpp>
 
 namespace continuo::studies {
-
-/// The outcomes of a chunk; nothing where it was interrupted. `on_run` is called after each run.
-[[nodiscard]] std::optional<std::vector<SweepOutcome>> run_chunk(const PreparedSweep& sweep,
-                                                                 const SweepIdentity& identity, std::uint64_t chunk,
-                                                                 const std::atomic<bool>* interrupt,
-                                                                 const std::function<void()>& on_run = {});
 
 /// What is to be done, and who gets it.
 struct SweepWork {

@@ -1,0 +1,195 @@
+// Runs of a sweep that go together against the same runs one by one, bit by bit: random systems by every method that
+// can, whatever their number, neighbours and order, those that fail among them.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <continuo/language/load.hpp>
+#include <continuo/studies/sweep/sweep_run.hpp>
+
+namespace continuo::studies::sweep_together_test {
+namespace {
+
+PreparedSweep prepared(const std::string& text) {
+  model::Loaded loaded = model::load(model::Source("model.sim", text));
+  EXPECT_TRUE(loaded) << loaded.text() << text;
+  auto made = PreparedSweep::create(*std::move(loaded.model), {});
+  EXPECT_TRUE(made) << describe(made.status());
+  return *std::move(made);
+}
+
+std::uint64_t bits(double value) {
+  return std::isnan(value) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(value);
+}
+
+void expect_same(const SweepOutcome& actual, const SweepOutcome& expected) {
+  EXPECT_EQ(actual.ending, expected.ending);
+  EXPECT_EQ(bits(actual.t), bits(expected.t));
+  EXPECT_EQ(actual.message, expected.message);
+  ASSERT_EQ(actual.kept.size(), expected.kept.size());
+  for (std::size_t k = 0; k < expected.kept.size(); ++k)
+    EXPECT_EQ(bits(actual.kept[k]), bits(expected.kept[k])) << "kept " << k << ": " << actual.kept[k];
+}
+
+std::vector<SweepOutcome> together(const PreparedSweep& sweep, const std::vector<std::uint64_t>& runs) {
+  std::vector<SweepOutcome> outcomes;
+  sweep.run_each(runs, [&](SweepOutcome outcome) {
+    outcomes.push_back(std::move(outcome));
+    return true;
+  });
+  return outcomes;
+}
+
+std::vector<std::uint64_t> all_runs(const PreparedSweep& sweep) {
+  std::vector<std::uint64_t> runs(sweep.runs());
+  std::iota(runs.begin(), runs.end(), std::uint64_t{0});
+  return runs;
+}
+
+void expect_the_runs_one_by_one(const PreparedSweep& sweep, const std::vector<std::uint64_t>& runs) {
+  const std::vector<SweepOutcome> outcomes = together(sweep, runs);
+  ASSERT_EQ(outcomes.size(), runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    SCOPED_TRACE(fmt::format("run {}", runs[i]));
+    expect_same(outcomes[i], sweep.run(runs[i]));
+  }
+}
+
+/// A system of one to five states, with terms of every kind; some of its runs end before their time.
+std::string random_model(std::mt19937& random, const std::string& how) {
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto n = static_cast<int>(1 + random() % 5);
+  const auto x = [&] { return fmt::format("x{}", 1 + random() % static_cast<unsigned>(n)); };
+  const auto term = [&]() -> std::string {
+    switch (random() % 9) {
+      case 0:
+        return fmt::format("a*{}*{}", x(), x());
+      case 1:
+        return fmt::format("sin({} + b)", x());
+      case 2:
+        return fmt::format("{}/(1 + {}^2)", x(), x());
+      case 3:
+        return fmt::format("exp(-{}^2)", x());
+      case 4:
+        return fmt::format("b*{}", x());
+      case 5:
+        return fmt::format("c*cos(2*t)*{}", x());
+      case 6:
+        return fmt::format("{}*{}*{}", any(random), x(), x());
+      case 7:
+        return fmt::format("sqrt(1 + {}^2)*tanh({})", x(), x());
+      default:
+        return fmt::format("atan2({}, 2 + {}^2)", x(), x());
+    }
+  };
+  std::string text = "param a = 0.5\nparam b = 1\nparam c = a + b/3\n";
+  for (int i = 1; i <= n; ++i) {
+    text += fmt::format("x{}' = -0.3*x{}", i, i);
+    for (unsigned k = 0; k < 1 + random() % 3; ++k) text += " + " + term();
+    text += fmt::format("\nx{}(0) = {}{}\n", i, any(random), i == 1 ? " + 0.1*b" : "");
+  }
+  return text + "run 0..4 " + how +
+         "\nsweep { a uniform(-1, 1.5); b normal(1, 0.5); x1(0) in (0.1, -0.5, 1, 2)\n  runs 27 sobol seed 3\n"
+         "  keep x1 at end, c*x1 + a at 1.25, x1 at 4, x1 at 0, time of end, count of events,\n"
+         "    max(x1), min(x1*b), mean(x1), x1 at 0..4 by 0.4 }\n";
+}
+
+TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
+  const std::vector<std::string> ways = {
+      "method dop853 tol 1e-8",  "method tsitouras5 tol 1e-6",          "method verner9 tol 1e-11, abs 1e-11",
+      "method verner7 tol 1e-7", "method dormand_prince5 tol 1e-3",     "method bogacki_shampine3 tol 1e-4",
+      "method rk4 step 0.01",    "method dop853 tol 1e-5 max step 0.1", "method tsitouras5 step 0.03"};
+  for (unsigned seed = 0; seed < 18; ++seed) {
+    std::mt19937 random(seed);
+    const std::string text = random_model(random, ways[seed % ways.size()]);
+    SCOPED_TRACE(text);
+    const PreparedSweep sweep = prepared(text);
+    EXPECT_TRUE(sweep.goes_together());
+    expect_the_runs_one_by_one(sweep, all_runs(sweep));
+  }
+}
+
+/// x' = a*x^2 from 1 ends at 1/a, the root of a negative number is none, and steps can be too many.
+TEST(SweepTogether, RunsThatFailDisturbNoOther) {
+  const PreparedSweep sweep = prepared(
+      "param a = 0\nparam b = 1\nx' = a*x^2 + 0*sqrt(b - t)\nx(0) = 1\nrun 0..1 method dop853 max steps 400\n"
+      "sweep { a in (0, 0.5, 0.9, 1, 1.1, 3); b in (2, 0.5, 1, -1, 7)\n  keep x at end, max(x), x at 0.25 }\n");
+  const std::vector<SweepOutcome> outcomes = together(sweep, all_runs(sweep));
+  std::size_t failures = 0;
+  for (const SweepOutcome& outcome : outcomes) failures += succeeded(outcome.ending) ? 0 : 1;
+  EXPECT_GT(failures, 8U);
+  EXPECT_LT(failures, 24U);
+  expect_the_runs_one_by_one(sweep, all_runs(sweep));
+}
+
+/// A run that stiffness slows is foreseen to be endless after thousands of steps, and not by its lane.
+TEST(SweepTogether, RunsWithTooManyStepsEndAsTheyDoAlone) {
+  const PreparedSweep sweep = prepared(
+      "param k = 1\nx' = k*(cos(t) - x)\nx(0) = 2\nrun 0..50 method tsitouras5 tol 1e-4 max steps 3000\n"
+      "sweep { k in (1, 10, 100, 300, 1000, 1e4, 1e5, 1e7, 1e9, 3)\n  keep x at end, mean(x) }\n");
+  const std::vector<SweepOutcome> outcomes = together(sweep, all_runs(sweep));
+  EXPECT_TRUE(succeeded(outcomes[0].ending));
+  EXPECT_EQ(outcomes[8].ending, Ending::too_many_steps);
+  expect_the_runs_one_by_one(sweep, all_runs(sweep));
+}
+
+TEST(SweepTogether, NeitherOrderNorNeighboursNorTheirNumberMatter) {
+  std::mt19937 random(7);
+  const PreparedSweep sweep = prepared(random_model(random, "method dop853 tol 1e-7"));
+  for (const std::size_t count : {1U, 2U, 3U, 7U, 8U, 9U, 26U}) {
+    std::vector<std::uint64_t> runs = all_runs(sweep);
+    std::ranges::shuffle(runs, random);
+    runs.resize(count);
+    expect_the_runs_one_by_one(sweep, runs);
+  }
+}
+
+TEST(SweepTogether, WhatIsVariedMayChangeTheEndAndTheSteps) {
+  for (const char* how :
+       {"run 0..T method dop853", "run 0..2 step T/100 method rk4", "run 0..T + 1 max step T/10 method tsitouras5"}) {
+    SCOPED_TRACE(how);
+    const PreparedSweep sweep = prepared(fmt::format(
+        "param T = 1\nparam k = 1\ninput u = 0\nx'' = -k*x + u\nx(0) = k\nx'(0) = 0\n{}\n"
+        "sweep {{ T in (1, 1, 2); k in (1, 4, 9); u in (0, 1)\n  keep x at end, x at T, max(x), time of end }}\n",
+        how));
+    expect_the_runs_one_by_one(sweep, all_runs(sweep));
+  }
+}
+
+TEST(SweepTogether, EndsWhereNoMoreRunsAreWanted) {
+  std::mt19937 random(9);
+  const PreparedSweep sweep = prepared(random_model(random, "method tsitouras5"));
+  std::vector<SweepOutcome> outcomes;
+  sweep.run_each(all_runs(sweep), [&](SweepOutcome outcome) {
+    outcomes.push_back(std::move(outcome));
+    return outcomes.size() < 5;
+  });
+  ASSERT_EQ(outcomes.size(), 5U);
+  for (std::uint64_t run = 0; run < 5; ++run) expect_same(outcomes[run], sweep.run(run));
+}
+
+/// Models whose runs are made one by one: events, jumps, a method that has no lanes or is chosen.
+TEST(SweepTogether, OtherModelsAreRunOneByOne) {
+  const std::string end = "sweep { k in (1, 2, 3) }\n";
+  for (const std::string& text :
+       {"param k = 1\nx' = -k\nx(0) = 1\nwhen x falls through 0 { stop }\nrun 0..9 method dop853\n" + end,
+        "param k = 1\nx' = -k*sign(x)\nx(0) = 1\nrun 0..3 method dop853\n" + end,
+        "param k = 1\nx' = -k*x\nx(0) = 1\nat 1 { x := k }\nrun 0..3 method dop853\n" + end,
+        "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..3 method rodas5p\n" + end,
+        "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..3\n" + end}) {
+    SCOPED_TRACE(text);
+    const PreparedSweep sweep = prepared(text);
+    expect_the_runs_one_by_one(sweep, all_runs(sweep));
+  }
+}
+
+}  // namespace
+}  // namespace continuo::studies::sweep_together_test
