@@ -9,8 +9,12 @@
 
 namespace continuo::model {
 
-Unit::Unit(std::string symbol, Dimension dimension, double factor) : dimension_(dimension), factor_(factor) {
-  symbols_.emplace_back(std::move(symbol), Dimension::one);
+Unit::Unit(std::string symbol, Dimension dimension, double factor)
+    : Unit(Content{dimension, factor, {{std::move(symbol), Dimension::one}}}) {}
+
+const Unit::Content& Unit::content() const {
+  static const Content one;
+  return content_ ? *content_ : one;
 }
 
 namespace {
@@ -41,36 +45,36 @@ Dimension combine(const Dimension& a, const Dimension& b, int sign) {
 }  // namespace
 
 Unit operator*(const Unit& a, const Unit& b) {
-  Unit product = a;
-  product.dimension_ = combine(a.dimension_, b.dimension_, 1);
-  product.factor_ *= b.factor_;
-  merge(product.symbols_, b.symbols_, 1);
-  return product;
+  Unit::Content product = a.content();
+  product.dimension = combine(a.dimension(), b.dimension(), 1);
+  product.factor *= b.factor();
+  merge(product.symbols, b.content().symbols, 1);
+  return Unit(std::move(product));
 }
 
 Unit operator/(const Unit& a, const Unit& b) {
-  Unit quotient = a;
-  quotient.dimension_ = combine(a.dimension_, b.dimension_, -1);
-  quotient.factor_ /= b.factor_;
-  merge(quotient.symbols_, b.symbols_, -1);
-  return quotient;
+  Unit::Content quotient = a.content();
+  quotient.dimension = combine(a.dimension(), b.dimension(), -1);
+  quotient.factor /= b.factor();
+  merge(quotient.symbols, b.content().symbols, -1);
+  return Unit(std::move(quotient));
 }
 
 std::optional<Unit> power(const Unit& unit, int numerator, int denominator) {
   if (denominator == 0) return std::nullopt;
   if (numerator == 0) return Unit();
-  Unit result = unit;
+  Unit::Content result = unit.content();
   bool exact = true;
   const auto raise = [&](int exponent) {
     const long long product = static_cast<long long>(exponent) * numerator;
     exact = exact && product % denominator == 0 && std::abs(product / denominator) < 1'000'000;
     return exact ? static_cast<int>(product / denominator) : 0;
   };
-  for (int& exponent : result.dimension_.exponent) exponent = raise(exponent);
-  for (auto& [symbol, exponent] : result.symbols_) exponent = raise(exponent);
+  for (int& exponent : result.dimension.exponent) exponent = raise(exponent);
+  for (auto& [symbol, exponent] : result.symbols) exponent = raise(exponent);
   if (!exact) return std::nullopt;
-  result.factor_ = std::pow(unit.factor_, static_cast<double>(numerator) / denominator);
-  return result;
+  result.factor = std::pow(unit.factor(), static_cast<double>(numerator) / denominator);
+  return Unit(std::move(result));
 }
 
 std::optional<Unit> power(const Unit& unit, double exponent) {
@@ -132,13 +136,14 @@ std::string with_exponent(const std::string& symbol, int sixtieths) {
 std::string to_text(const Unit& unit) {
   std::string above, below;
   int divisors = 0;
-  for (const auto& [symbol, exponent] : unit.symbols_) {
+  const Unit::Factors& symbols = unit.content().symbols;
+  for (const auto& [symbol, exponent] : symbols) {
     std::string& side = exponent > 0 ? above : below;
     divisors += exponent < 0 ? 1 : 0;
     side += (side.empty() ? "" : "*") + with_exponent(symbol, std::abs(exponent));
   }
-  if (unit.symbols_.empty()) return "1";
-  if (unit.symbols_.size() > 1) {
+  if (symbols.empty()) return "1";
+  if (symbols.size() > 1) {
     if (unit.dimensionless() && same_factor(unit.factor(), 1)) return "1";
     if (const char* name = known_name(unit)) return name;
   }

@@ -8,6 +8,7 @@
 // The names come from UDUNITS-2; the usual ones are known here already, so that most models never load its database.
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,9 +36,9 @@ class Unit {
   /// A unit of one name, worth `factor` coherent SI units of this dimension.
   Unit(std::string symbol, Dimension dimension, double factor);
 
-  [[nodiscard]] const Dimension& dimension() const { return dimension_; }
-  [[nodiscard]] double factor() const { return factor_; }
-  [[nodiscard]] bool dimensionless() const { return dimension_ == Dimension{}; }
+  [[nodiscard]] const Dimension& dimension() const { return content().dimension; }
+  [[nodiscard]] double factor() const { return content().factor; }
+  [[nodiscard]] bool dimensionless() const { return dimension() == Dimension{}; }
 
   friend Unit operator*(const Unit& a, const Unit& b);
   friend Unit operator/(const Unit& a, const Unit& b);
@@ -46,9 +47,16 @@ class Unit {
 
  private:
   using Factors = std::vector<std::pair<std::string, int>>;  // symbol and exponent in sixtieths, as the user wrote
-  Dimension dimension_;
-  double factor_ = 1;
-  Factors symbols_;
+  struct Content {
+    Dimension dimension{};
+    double factor = 1;
+    Factors symbols{};
+  };
+
+  explicit Unit(Content content) : content_(std::make_shared<const Content>(std::move(content))) {}
+  [[nodiscard]] const Content& content() const;
+
+  std::shared_ptr<const Content> content_;  // shared by copies: the states of a grid have one unit; null is the unit 1
 };
 
 /// unit^(numerator/denominator); empty where the exponents leave the sixtieths.
