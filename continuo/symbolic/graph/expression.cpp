@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <continuo/symbolic/graph/expression.hpp>
+#include <continuo/symbolic/graph/node_values.hpp>
 
 namespace continuo::model {
 
@@ -17,6 +18,21 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
   return h * 0xff51afd7ed558ccdu;  // multiplier of MurmurHash3's finaliser (A. Appleby, public domain)
 }
 
+/// Where a node is looked for first. Nodes of the same shape follow each other here as their arguments do, so that the
+/// members of a family are neighbours in the table and not in all corners of the memory.
+std::uint64_t home(const Node& node) {
+  constexpr std::uint32_t near = 1u << 17;
+  if (node.op == Op::variable) return node.number + mix(0, node.number >> 24);
+  const std::uint32_t a = node.a.index, b = node.b.valid() ? node.b.index : a, c = node.c.valid() ? node.c.index : a;
+  const std::uint32_t to_b = b - a + near, to_c = c - a + near;
+  const bool moves_together = to_b < 2 * near && to_c < 2 * near;  // else an argument is the same for all members
+  const std::uint64_t shape = moves_together ? (std::uint64_t{to_b} << 32) | to_c : 0;
+  const std::uint64_t h = mix(mix(static_cast<std::uint64_t>(node.op), node.number), shape) +
+                          mix(0, std::bit_cast<std::uint64_t>(node.value));
+  return (h ^ (h >> 29)) + (moves_together ? a : std::uint64_t{a} + b + c);
+}
+
+/// Where it is looked for from then on.
 std::uint64_t hash(const Node& node) {
   std::uint64_t h = mix(static_cast<std::uint64_t>(node.op), node.number);
   h = mix(h, node.a.index);
@@ -30,25 +46,31 @@ bool same(const Node& p, const Node& q) {
          std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
 }
 
+/// The slot that holds an equal node, or the empty one for it.
+std::size_t slot_of(const Node& node, const std::vector<Node>& nodes, const std::vector<std::uint32_t>& slots) {
+  const auto ends_at = [&](std::size_t slot) { return slots[slot] == empty || same(nodes[slots[slot]], node); };
+  const std::size_t mask = slots.size() - 1;
+  std::size_t slot = home(node) & mask;
+  if (ends_at(slot)) return slot;
+  const std::uint64_t h = hash(node), stride = (h >> 32) | 1;  // slots at home are taken in long rows: leap over them
+  slot = h & mask;
+  while (!ends_at(slot)) slot = (slot + stride) & mask;
+  return slot;
+}
+
 }  // namespace
 
 Graph::Graph() : slots_(64, empty) {}
 
 void Graph::grow() {
   slots_.assign(2 * slots_.size(), empty);
-  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-    std::size_t slot = hash(nodes_[i]) & (slots_.size() - 1);
-    while (slots_[slot] != empty) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = i;
-  }
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) slots_[slot_of(nodes_[i], nodes_, slots_)] = i;
 }
 
 NodeId Graph::intern(const Node& node) {
   if (2 * nodes_.size() >= slots_.size()) grow();
-  std::size_t slot = hash(node) & (slots_.size() - 1);
-  for (; slots_[slot] != empty; slot = (slot + 1) & (slots_.size() - 1)) {
-    if (same(nodes_[slots_[slot]], node)) return NodeId{slots_[slot]};
-  }
+  const std::size_t slot = slot_of(node, nodes_, slots_);
+  if (slots_[slot] != empty) return NodeId{slots_[slot]};
   slots_[slot] = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back(node);
   return NodeId{slots_[slot]};
@@ -82,11 +104,20 @@ bool Graph::is(NodeId id, double value) const {
 }
 
 std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots) {
+  constexpr std::size_t few = 64;  // a small expression is not worth a look at the whole graph
   std::uint32_t top = 0;
   for (const NodeId root : roots) top = std::max(top, root.index + 1);
-  std::vector<bool> seen(top, false);
+  std::vector<bool> seen;
   std::vector<NodeId> found;
   const auto visit = [&](NodeId id) {
+    if (seen.empty()) {
+      if (std::ranges::find(found, id) != found.end()) return;
+      found.push_back(id);
+      if (found.size() < few) return;
+      seen.assign(top, false);
+      for (const NodeId known : found) seen[known.index] = true;
+      return;
+    }
     if (!seen[id.index]) found.push_back(id);
     seen[id.index] = true;
   };
@@ -127,10 +158,11 @@ NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(Node
 }
 
 NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement) {
-  std::vector<NodeId> image(node.index + 1);
-  const std::function<NodeId(NodeId)> of = [&](NodeId id) { return image[id.index]; };
-  for (const NodeId id : reachable(graph, {&node, 1})) {
-    image[id.index] =
+  const std::vector<NodeId> nodes = reachable(graph, {&node, 1});
+  NodeValues<NodeId> images(nodes);
+  const std::function<NodeId(NodeId)> of = [&](NodeId id) { return images[id]; };
+  for (const NodeId id : nodes) {
+    images[id] =
         graph[id].op == Op::variable ? replacement(graph[id].number).value_or(id) : with_arguments(graph, id, of);
   }
   return of(node);
@@ -144,20 +176,19 @@ NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId repl
 
 std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
                              const TableLookup& table) {
-  std::uint32_t top = 0;
-  for (const NodeId node : nodes) top = std::max(top, node.index + 1);
-  std::vector<double> value(top);
-  const auto of = [&](NodeId id) { return id.valid() ? value[id.index] : 0.0; };
-  for (const NodeId id : reachable(graph, nodes)) {
+  const std::vector<NodeId> computed = reachable(graph, nodes);
+  NodeValues<double> value(computed);
+  const auto of = [&](NodeId id) { return id.valid() ? value[id] : 0.0; };
+  for (const NodeId id : computed) {
     const Node& n = graph[id];
     if (n.op == Op::constant) {
-      value[id.index] = n.value;
+      value[id] = n.value;
     } else if (n.op == Op::variable) {
-      value[id.index] = variables[n.number];
+      value[id] = variables[n.number];
     } else if (n.op >= Op::interpolate && table) {
-      value[id.index] = table(n.number, of(n.a), n.op == Op::interpolate_slope);
+      value[id] = table(n.number, of(n.a), n.op == Op::interpolate_slope);
     } else {
-      value[id.index] = compute(n.op, of(n.a), of(n.b), of(n.c));
+      value[id] = compute(n.op, of(n.a), of(n.b), of(n.c));
     }
   }
   std::vector<double> results;

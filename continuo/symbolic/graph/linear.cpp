@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <continuo/symbolic/graph/expression.hpp>
+#include <continuo/symbolic/graph/node_values.hpp>
 
 namespace continuo::model {
 
@@ -63,11 +64,12 @@ Split split(Graph& g, const Node& node, const Split& a, const Split& b, const Sp
 }  // namespace
 
 std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variable) {
-  std::vector<Split> splits(node.index + 1);
+  const std::vector<NodeId> nodes = reachable(graph, {&node, 1});
+  NodeValues<Split> splits(nodes);
   const Split none;
-  for (const NodeId id : reachable(graph, {&node, 1})) {
+  for (const NodeId id : nodes) {
     const Node n = graph[id];
-    Split& mine = splits[id.index];
+    Split& mine = splits[id];
     mine.remainder = id;
     if (n.op == Op::variable && n.number == variable) {
       mine = {.coefficient = graph.constant(1), .remainder = graph.constant(0)};
@@ -75,15 +77,15 @@ std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variabl
     }
     bool contains = false;
     for (const NodeId argument : arguments(n)) {
-      const Split& of = splits[argument.index];
+      const Split& of = splits[argument];
       if (!of.linear) return std::nullopt;  // no operation makes a nonlinear argument linear again
       contains = contains || of.coefficient.valid();
     }
-    const auto of = [&](NodeId a) -> const Split& { return a.valid() ? splits[a.index] : none; };
+    const auto of = [&](NodeId a) -> const Split& { return a.valid() ? splits[a] : none; };
     if (contains) mine = split(graph, n, of(n.a), of(n.b), of(n.c));
     if (!mine.linear) return std::nullopt;
   }
-  const Split& result = splits[node.index];
+  const Split& result = splits[node];
   return Linear{zero_if_absent(graph, result.coefficient), result.remainder};
 }
 
