@@ -1,6 +1,7 @@
 // continuo/language/check/declarations/statements.cpp
 // Every declared name, once; the walk keeps to the order of the text.
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ void Statements::declare_top_level() {
   }
 }
 
-void Statements::define_member(Definition::Kind kind, const ast::Definition& item, const std::vector<long>& indices,
+void Statements::define_member(Definition::Kind kind, const ast::Definition& item, std::span<const long> indices,
                                const ast::Expression& value, const Scope& scope, const ast::Input* input) {
   const std::string name = indexed(item.name.text, indices);
   const Symbol symbol{Symbol::Kind::definition, declared_.definitions.size(), item.name.span};
@@ -58,7 +59,7 @@ void Statements::define_member(Definition::Kind kind, const ast::Definition& ite
                  fmt::format("as an equation of its own line: {} = ...", report_.quote(item.name.span)));
     return;
   }
-  if (!declared_.symbols.declare(name, scope.mode, symbol, item.name.text, indices, report_)) return;
+  if (!declared_.symbols.declare(item.name.text, indices, scope.mode, symbol, report_)) return;
   declared_.definitions.push_back({kind, name, &value, &item, input, scope});
 }
 
@@ -91,7 +92,7 @@ void Statements::define_elements(Definition::Kind kind, const ast::Definition& i
   }
   for (long i = ends->first; i <= ends->second && expressions_.indices.count_written_out(item.elements->span); ++i) {
     const auto& value = list ? list->items[static_cast<std::size_t>(i - ends->first)] : item.value;
-    define_member(kind, item, {i}, value, scope, nullptr);
+    define_member(kind, item, std::array{i}, value, scope, nullptr);
   }
 }
 
@@ -154,7 +155,7 @@ void Statements::walk_statement(const ast::Statement& statement, Scope& scope, b
           orders_.see_condition(node, scope, span);
         } else if constexpr (std::is_same_v<T, ast::Family>) {
           const auto member = [&] { walk(node.body, scope, true); };
-          if (!expressions_.indices.for_each_index(node.index, node.range, scope, member)) lose(node.body);
+          if (!expressions_.indices.for_each_kept_index(node.index, node.range, scope, member)) lose(node.body);
         } else if constexpr (std::is_same_v<T, ast::Mode>) {
           walk_mode(node, scope);
         } else {
@@ -166,7 +167,7 @@ void Statements::walk_statement(const ast::Statement& statement, Scope& scope, b
 
 void Statements::walk_other(const ast::Table& table, Scope&, Span) {
   const Symbol symbol{Symbol::Kind::table, declared_.tables.size(), table.name.span};
-  if (!declared_.symbols.declare(table.name.text, Scope::no_mode, symbol, table.name.text, {}, report_)) return;
+  if (!declared_.symbols.declare(table.name.text, {}, Scope::no_mode, symbol, report_)) return;
   const std::string file = file_of(table.file, table.file_span, report_);
   declared_.tables.push_back(
       {table.name.text, file, points_of(file, table.file_span, Table::Between::linear, {}, report_), table.name.span});
@@ -177,7 +178,7 @@ void Statements::walk_other(const ast::Unknown& unknown, Scope& scope, Span span
   if (!indices) return;
   const std::string name = indexed(unknown.name.text, *indices);
   const Symbol symbol{Symbol::Kind::unknown, declared_.unknowns.size(), unknown.name.span};
-  if (declared_.symbols.declare(name, Scope::no_mode, symbol, unknown.name.text, *indices, report_))
+  if (declared_.symbols.declare(unknown.name.text, *indices, Scope::no_mode, symbol, report_))
     declared_.unknowns.push_back({&unknown, scope, span, name});
 }
 

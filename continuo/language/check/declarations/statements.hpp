@@ -1,6 +1,7 @@
 // continuo/language/check/declarations/statements.hpp
 // The walk through the text: every statement is put into its list, families written out.
 #pragma once
+#include <span>
 #include <vector>
 
 #include <continuo/language/check/expressions/expressions.hpp>
@@ -50,7 +51,7 @@ class Statements {
     declared_.events.push_back({&node, scope, span});
   }
   void define_all(Definition::Kind kind, const std::vector<ast::Definition>& items, Scope& scope, bool inside);
-  void define_member(Definition::Kind kind, const ast::Definition& item, const std::vector<long>& indices,
+  void define_member(Definition::Kind kind, const ast::Definition& item, std::span<const long> indices,
                      const ast::Expression& value, const Scope& scope, const ast::Input* input);
   void define_elements(Definition::Kind kind, const ast::Definition& item, Scope& scope);
   void lose(const std::vector<ast::Statement>& body);

@@ -2,6 +2,7 @@
 // Solves single equations first, then the coupled ones together, mode by mode.
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -107,12 +108,14 @@ void Equations::count_algebraic(std::size_t algebraic) const {
 
 /// While some equation holds one derivative that is still open, that equation gives it.
 void Equations::solve_one_by_one(ModeAtWork& work) {
-  std::vector<std::vector<std::size_t>> users(declared_.bases.size());
+  std::unordered_map<std::uint32_t, std::vector<std::size_t>> users;  // equations that hold others beside this one
   std::vector<std::size_t> ready;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
-    for (const std::uint32_t base : equation.holds) users[base].push_back(e);
     equation.open = equation.holds.size();
+    if (equation.open > 1) {
+      for (const std::uint32_t base : equation.holds) users[base].push_back(e);
+    }
     if (equation.open == 1) ready.push_back(e);
   }
   for (std::size_t next = 0; next < ready.size(); ++next) {
@@ -123,7 +126,9 @@ void Equations::solve_one_by_one(ModeAtWork& work) {
     equation.used = true;
     work.by[*open] = ready[next];
     solve_for(work, equation, *open);
-    for (const std::size_t user : users[*open]) {
+    const auto found = users.find(*open);
+    if (found == users.end()) continue;
+    for (const std::size_t user : found->second) {
       if (--work.equations[user].open == 1) ready.push_back(user);
     }
   }

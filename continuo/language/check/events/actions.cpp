@@ -65,21 +65,22 @@ void Actions::refuse_without_symbol(const ast::Name& target, const std::string& 
 
 std::optional<Assign> Actions::assignment(const ast::Assignment& text, Scope& scope) const {
   const ast::Name& target = text.target;
-  const auto key = expressions_.indices.key_of(target, scope);
-  if (!key) return std::nullopt;
-  const Symbol* symbol = declared_.symbols.find(*key, scope.mode);
+  const auto indexed_name = expressions_.indices.name_of(target, scope);
+  if (!indexed_name) return std::nullopt;
+  const std::string key = indexed_name->text();
+  const Symbol* symbol = declared_.symbols.find(*indexed_name, scope.mode);
   if (!symbol) {
-    refuse_without_symbol(target, *key);
+    refuse_without_symbol(target, key);
     return std::nullopt;
   }
   if (symbol->kind == Symbol::Kind::body) {
-    report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", *key), "it is a body",
-                 fmt::format("assign what of it changes: {0}.x := ..., {0}.x' := ...", *key));
+    report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", key), "it is a body",
+                 fmt::format("assign what of it changes: {0}.x := ..., {0}.x' := ...", key));
     return std::nullopt;
   }
   if (symbol->kind != Symbol::Kind::base) {
-    report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", *key), "only states change at an event",
-                 fmt::format("make it a state: {0}' = 0 and {0}(0) = ... instead of its definition", *key));
+    report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", key), "only states change at an event",
+                 fmt::format("make it a state: {0}' = 0 and {0}(0) = ... instead of its definition", key));
     return std::nullopt;
   }
   const Base& base = declared_.bases[symbol->index];

@@ -12,15 +12,15 @@ namespace continuo::model::detail {
 namespace {
 
 /// `x[i]` with i known: the name of an event says which member of the family it is of.
-void write_out(ast::Expression& expression, const std::vector<Index>& indices) {
-  const auto inside = [&](ast::Expression& part) { write_out(part, indices); };
+void write_out(ast::Expression& expression, const Instance& instance) {
+  const auto inside = [&](ast::Expression& part) { write_out(part, instance); };
   std::visit(
       [&](auto& node) {
         using T = std::decay_t<decltype(node)>;
         if constexpr (std::is_same_v<T, ast::Name>) {
           std::ranges::for_each(node.indices, inside);
-          const auto known = std::ranges::find(indices, node.text, &Index::name);
-          if (known != indices.end() && node.indices.empty() && node.primes == 0) {
+          const Index* known = instance.find_index(node.text);
+          if (known && node.indices.empty() && node.primes == 0) {
             expression.node = ast::Number{static_cast<double>(known->value)};
           }
         } else if constexpr (std::is_same_v<T, ast::Unary>) {
@@ -51,8 +51,8 @@ EventList Events::make() {
 
 void Events::add(const ast::When& text, Scope& scope, Span span) {
   ast::When written = text;
-  write_out(written.subject, scope.indices);
-  if (written.level) write_out(*written.level, scope.indices);
+  write_out(written.subject, scope);
+  if (written.level) write_out(*written.level, scope);
   When event{.name = event_name(written),
              .guard = {},
              .direction = Direction::rises,
@@ -78,14 +78,14 @@ void Events::add(const ast::When& text, Scope& scope, Span span) {
 
 void Events::add(const ast::At& text, Scope& scope, Span span) {
   ast::At written = text;
-  write_out(written.time, scope.indices);
+  write_out(written.time, scope);
   const auto time = expressions_.values.time_setting(text.time, scope, "the time of an event");
   add_scheduled({Scheduled::Kind::at, event_name(written), time, {}, {}, span}, text.actions, scope);
 }
 
 void Events::add(const ast::Every& text, Scope& scope, Span span) {
   ast::Every written = text;
-  write_out(written.period, scope.indices);
+  write_out(written.period, scope);
   const auto period = expressions_.values.time_setting(text.period, scope, "the period of an event");
   if (period && !(period->value > 0)) {
     report_.fail("E261", text.period.span, "the period must be greater than zero",

@@ -89,7 +89,7 @@ Value Calls::interpolation(const ast::Call& node, Span span, Scope& scope) const
   }
   const auto* name = std::get_if<ast::Name>(&node.arguments[0].node);
   const Symbol* table = name && name->indices.empty() && name->primes == 0
-                            ? workspace_.declared.symbols.find(name->text, scope.mode)
+                            ? workspace_.declared.symbols.find({name->text}, scope.mode)
                             : nullptr;
   if (!table || table->kind != Symbol::Kind::table) {
     std::vector<std::string> tables;
@@ -106,7 +106,7 @@ Value Calls::interpolation(const ast::Call& node, Span span, Scope& scope) const
 
 /// `h(1)`: what h is at a time; anything else with brackets behind it is a mistake.
 Value Calls::sample(const ast::Call& node, Span span, Scope& scope) const {
-  const auto key = expressions_.indices.key_of(node.callee, scope);
+  const auto key = expressions_.indices.name_of(node.callee, scope);
   if (!key) return operations_.bad();
   if (!workspace_.declared.symbols.find(*key, scope.mode) && !workspace_.declared.symbols.family(node.callee.text)) {
     return unknown_function(node.callee);

@@ -5,6 +5,7 @@
 //   const Value value = expressions.values.number_of(check.text->value, scope);
 //   if (!value.bad) ... value.node, value.measured
 #pragma once
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,7 @@ struct Workspace {
   std::vector<Measured> unknown_units{};  // by number, as their guesses state them
   std::vector<NodeId> solved{};           // highest derivative of each base where the model has one mode; empty before
   std::size_t written_out = 0;            // members of families and terms of sums so far
+  std::deque<Index> kept_indices{};       // of the statements that stand in families
 };
 
 /// The translators, reporting to one report: that of the check, or a silent one for a trial.

@@ -10,13 +10,6 @@ namespace continuo::model::detail {
 
 namespace {
 
-const Index* find_index(const Scope& scope, std::string_view name) {
-  for (std::size_t i = scope.indices.size(); i-- > 0;) {
-    if (scope.indices[i].name == name) return &scope.indices[i];
-  }
-  return nullptr;
-}
-
 /// `3`, `i`, `i+1`, `i-1` without a detour through the graph: nearly every index looks like one of these.
 std::optional<long> quick_index(const ast::Expression& expression, const Scope& scope) {
   if (const auto* number = std::get_if<ast::Number>(&expression.node)) {
@@ -24,7 +17,7 @@ std::optional<long> quick_index(const ast::Expression& expression, const Scope& 
     return static_cast<long>(number->value);
   }
   if (const auto* name = std::get_if<ast::Name>(&expression.node)) {
-    const Index* index = name->primes == 0 && name->indices.empty() ? find_index(scope, name->text) : nullptr;
+    const Index* index = name->primes == 0 && name->indices.empty() ? scope.find_index(name->text) : nullptr;
     return index ? std::optional(index->value) : std::nullopt;
   }
   const auto* binary = std::get_if<ast::Binary>(&expression.node);
@@ -60,8 +53,13 @@ std::optional<std::pair<long, long>> Indices::bounds(const ast::Range& range, Sc
   return std::pair{*first, *last};
 }
 
-std::optional<std::vector<long>> Indices::indices_of(const ast::Name& name, Scope& scope) const {
-  std::vector<long> indices;
+std::optional<IndexValues> Indices::indices_of(const ast::Name& name, Scope& scope) const {
+  IndexValues indices;
+  if (name.indices.size() > IndexValues::most) {
+    report_.fail("E219", name.span, fmt::format("a name has at most {} indices", IndexValues::most),
+                 fmt::format("here are {}", name.indices.size()));
+    return std::nullopt;
+  }
   for (const ast::Expression& index : name.indices) {
     const auto value = whole_number(index, scope, "an index");
     if (!value) return std::nullopt;
@@ -70,12 +68,14 @@ std::optional<std::vector<long>> Indices::indices_of(const ast::Name& name, Scop
   return indices;
 }
 
-std::optional<std::string> Indices::key_of(const ast::Name& name, Scope& scope) const {
-  const std::string member = name.member.empty() ? std::string() : "." + name.member;
-  if (name.indices.empty()) return name.text + member;
+std::optional<IndexedName> Indices::name_of(const ast::Name& name, Scope& scope) const {
   const auto indices = indices_of(name, scope);
   if (!indices) return std::nullopt;
-  return indexed(name.text, *indices) + member;
+  return IndexedName{name.text, *indices, name.member};
+}
+
+const Index* Indices::keep(const Index& index) const {
+  return &workspace_.kept_indices.emplace_back(index);
 }
 
 bool Indices::is_wanted(const ast::Sum& sum, Scope& scope) const {

@@ -2,11 +2,10 @@
 // Indices: the numbers in `u[i-1]`, `for i in 1..N` and the terms of a sum written out.
 #pragma once
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include <continuo/language/check/names/indexed_name.hpp>
 #include <continuo/language/check/names/scope.hpp>
 
 namespace continuo::model::detail {
@@ -25,9 +24,9 @@ class Indices {
   [[nodiscard]] std::optional<long> whole_number(const ast::Expression& expression, Scope& scope,
                                                  std::string_view what) const;
   [[nodiscard]] std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope) const;
-  [[nodiscard]] std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope) const;
-  /// The name as symbols have it: "u[3]", "ball.x".
-  [[nodiscard]] std::optional<std::string> key_of(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] std::optional<IndexValues> indices_of(const ast::Name& name, Scope& scope) const;
+  /// The name as symbols have it: u[3], ball.x.
+  [[nodiscard]] std::optional<IndexedName> name_of(const ast::Name& name, Scope& scope) const;
   /// One more member or term; false after saying that there are too many.
   [[nodiscard]] bool count_written_out(Span span) const;
 
@@ -37,14 +36,25 @@ class Indices {
   bool for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
     const auto ends = bounds(range, scope);
     if (!ends) return false;
-    scope.indices.push_back({index.text, 0});
-    const std::size_t place = scope.indices.size() - 1;
+    Index mine{index.text, 0, scope.innermost};
+    scope.innermost = &mine;
     for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
-      scope.indices[place].value = i;
+      mine.value = i;
       body();
     }
-    scope.indices.pop_back();
+    scope.innermost = mine.outer;
     return true;
+  }
+
+  /// The same where the body keeps the instance: every value of the index has an Index of its own, that stays.
+  template <class Body>
+  bool for_each_kept_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
+    return for_each_index(index, range, scope, [&] {
+      const Index* const mine = scope.innermost;
+      scope.innermost = keep(*mine);
+      body();
+      scope.innermost = mine;
+    });
   }
 
   /// The terms of a sum that its condition lets through.
@@ -56,6 +66,7 @@ class Indices {
   }
 
  private:
+  [[nodiscard]] const Index* keep(const Index& index) const;
   [[nodiscard]] bool is_wanted(const ast::Sum& sum, Scope& scope) const;
 
   Expressions& expressions_;

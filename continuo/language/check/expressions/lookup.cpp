@@ -39,19 +39,20 @@ Lookup::Lookup(Expressions& expressions)
 
 Value Lookup::lookup(const ast::Name& name, Scope& scope) const {
   if (name.indices.empty() && name.primes == 0) {
-    for (std::size_t i = scope.indices.size(); i-- > 0;) {
-      if (scope.indices[i].name == name.text) return operations_.of_number(static_cast<double>(scope.indices[i].value));
-    }
+    if (const Index* index = scope.find_index(name.text))
+      return operations_.of_number(static_cast<double>(index->value));
   }
   if (!name.member.empty())
     return scope.moment ? without_time(name, scope) : workspace_.world->member(name, scope, expressions_);
-  const auto key = expressions_.indices.key_of(name, scope);
-  if (!key) return operations_.bad();
-  return of_symbol(name, *key, scope);
+  const auto indexed_name = expressions_.indices.name_of(name, scope);
+  if (!indexed_name) return operations_.bad();
+  const Symbol* symbol = workspace_.declared.symbols.find(*indexed_name, scope.mode);
+  if (symbol && symbol->kind == Symbol::Kind::base && !scope.is_constant() && !scope.moment)
+    return derivative(name, symbol->index, scope);
+  return of_symbol(name, symbol, indexed_name->text(), scope);
 }
 
-Value Lookup::of_symbol(const ast::Name& name, const std::string& key, Scope& scope) const {
-  const Symbol* symbol = workspace_.declared.symbols.find(key, scope.mode);
+Value Lookup::of_symbol(const ast::Name& name, const Symbol* symbol, const std::string& key, Scope& scope) const {
   if (!symbol) return builtin(name, key, scope);
   if (symbol->kind == Symbol::Kind::body) {
     report_.fail("E224", name.span, fmt::format("`{}` is a body, not a number", key), {},
@@ -75,7 +76,6 @@ Value Lookup::of_symbol(const ast::Name& name, const std::string& key, Scope& sc
   }
   if (scope.is_constant()) return not_constant(name.span, key, scope);
   if (scope.moment) return without_time(name, scope);
-  if (symbol->kind == Symbol::Kind::base) return derivative(name, symbol->index, scope);
   if (name.primes > 0) {
     report_.fail("E218", name.span, fmt::format("`{}` has no derivative", key),
                  "it is an unknown of an algebraic equation",
@@ -124,7 +124,7 @@ std::vector<NodeId> Lookup::world_energies() const {
 }
 
 std::size_t Lookup::first_world_measure() const {
-  const Symbol* measures = workspace_.declared.symbols.find("world.kinetic", Scope::no_mode);
+  const Symbol* measures = workspace_.declared.symbols.find_of_world("world.kinetic");
   return workspace_.declared.bases[measures->index].first;
 }
 

@@ -12,6 +12,7 @@ namespace continuo::model::detail {
 class Expressions;
 class Operations;
 class Report;
+struct Symbol;
 struct Workspace;
 
 class Lookup {
@@ -31,7 +32,8 @@ class Lookup {
   Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {}) const;
 
  private:
-  [[nodiscard]] Value of_symbol(const ast::Name& name, const std::string& key, Scope& scope) const;
+  [[nodiscard]] Value of_symbol(const ast::Name& name, const Symbol* symbol, const std::string& key,
+                                Scope& scope) const;
   [[nodiscard]] Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
   [[nodiscard]] Value without_time(const ast::Name& name, const Scope& scope) const;
   [[nodiscard]] Value not_a_value(const ast::Name& name) const;

@@ -45,7 +45,7 @@ std::string repair(Expressions& expressions, const Term& term, const Measured& w
   std::vector<ast::Name*> names;
   collect_names(copy, names);
   for (std::size_t i = 0; i < std::min(names.size(), most_tried); ++i) {
-    const auto key = trial.indices.key_of(*names[i], inner);
+    const auto key = trial.indices.name_of(*names[i], inner);
     const Symbol* symbol = key ? declared.symbols.find(*key, inner.mode) : nullptr;
     if (!symbol || symbol->kind != Symbol::Kind::base) continue;
     const int written = names[i]->primes;

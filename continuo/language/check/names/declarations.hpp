@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -25,32 +27,32 @@ struct Definition {
   const ast::Expression* value;
   const ast::Definition* text;
   const ast::Input* input = nullptr;
-  Scope scope;
+  Instance scope;
   std::uint32_t variable = 0;  // of a parameter or an input
 };
 
 /// A variable with a derivative: its components are x, x', ... up to order - 1.
 struct Base {
   std::string name;
-  std::string family;  // without indices
+  std::string_view family;  // without indices
   int order = 0;
-  std::size_t first = 0;                  // index of its first state
-  Span span;                              // where its highest derivative stands first
-  std::vector<std::size_t> conditions{};  // into Declarations::conditions
-  bool in_world = false;                  // of a body or a measure of the world: it has no equation
-  bool has_equation = true;               // else it has an initial value only
+  std::size_t first = 0;                      // index of its first state
+  Span span;                                  // where its highest derivative stands first
+  std::span<const std::size_t> conditions{};  // into Declarations::conditions
+  bool in_world = false;                      // of a body or a measure of the world: it has no equation
+  bool has_equation = true;                   // else it has an initial value only
 };
 
 template <class T>
 struct Placed {
   const T* text;
-  Scope scope;
+  Instance scope;
   Span span;
 };
 
 struct UnknownText {
   const ast::Unknown* text;
-  Scope scope;
+  Instance scope;
   Span span;
   std::string name;
   std::uint32_t variable = 0;
@@ -58,14 +60,14 @@ struct UnknownText {
 
 struct ConditionText {
   const ast::Condition* text;
-  Scope scope;
+  Instance scope;
   Span span;
   std::size_t base;
 };
 
 struct EventText {
   std::variant<const ast::When*, const ast::At*, const ast::Every*, const ast::Initially*> text;
-  Scope scope;
+  Instance scope;
   Span span;
 };
 
@@ -77,14 +79,14 @@ struct ModeText {
 
 struct BodyText {
   const ast::WorldBody* text;  // null: of a pattern
-  Scope scope;
+  Instance scope;
   Span span;
   std::string name;
   std::size_t base;  // its first
 };
 struct PatternText {
   const ast::WorldBodies* text;
-  Scope scope;
+  Instance scope;
   Span span;
   std::vector<long> counts;
   std::size_t first, count;  // of its bodies
@@ -110,6 +112,7 @@ struct Declarations {
   std::vector<Base> bases;
   std::vector<Placed<ast::Equation>> equations;
   std::vector<ConditionText> conditions;
+  std::vector<std::size_t> conditions_by_base;  // indices of these, those of each base together
   std::vector<Placed<ast::Guess>> guesses;
   std::vector<UnknownText> unknowns;
   std::vector<EventText> events;

@@ -12,17 +12,33 @@
 
 namespace continuo::model::detail {
 
-/// `for i in ...`: what i is at the moment.
+/// `for i in ...`: what i is at the moment, and the index of the family around this one.
 struct Index {
   std::string_view name;
   long value;
+  const Index* outer = nullptr;
+};
+
+/// Which member of the families around it a statement is written out for, and in which mode it stands. It is kept for
+/// every member, so it is small.
+struct Instance {
+  static constexpr int no_mode = -1;
+  const Index* innermost = nullptr;
+  int mode = no_mode;
+
+  /// Null where no family around it has an index of this name.
+  [[nodiscard]] const Index* find_index(std::string_view name) const {
+    const Index* index = innermost;
+    while (index && index->name != name) index = index->outer;
+    return index;
+  }
 };
 
 /// Where an expression stands. Whoever changes it for a part of the text changes a copy.
-struct Scope {
-  static constexpr int no_mode = -1;
-  std::vector<Index> indices = {};
-  int mode = no_mode;
+struct Scope : Instance {
+  Scope() = default;
+  Scope(const Instance& instance) : Instance(instance) {}  // NOLINT(google-explicit-constructor)
+
   std::string_view constant = {};           // what must be constant here: "an index"; empty: everything may stand here
   std::vector<Sample>* samples = nullptr;   // where h(1) may stand: in checks and conditions
   const ast::Expression* moment = nullptr;  // of a condition: what changes is named with its time, x(0)

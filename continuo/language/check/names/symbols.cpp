@@ -12,11 +12,12 @@ namespace continuo::model::detail {
 
 namespace {
 
-std::string in_mode(int mode, const std::string& name) {
-  return mode == Scope::no_mode ? name : std::to_string(mode) + ":" + name;
+/// The names of the model come before those of its modes.
+std::size_t place_of(int mode) {
+  return mode == Scope::no_mode ? 0 : 1 + static_cast<std::size_t>(mode);
 }
 
-bool is_free_name(const std::string& name, Span span, Report& report) {
+bool is_free_name(std::string_view name, Span span, Report& report) {
   if (const std::string_view meaning = meaning_of_its_own(name); !meaning.empty()) {
     report.fail("E214", span, fmt::format("`{}` has a meaning of its own", name), std::string(meaning),
                 "take another name");
@@ -33,29 +34,28 @@ std::string_view meaning_of_its_own(std::string_view name) {
   return name == "t" ? "this is time" : name == "pi" ? "3.14159..." : "";
 }
 
-std::string indexed(std::string_view name, const std::vector<long>& indices) {
-  std::string text(name);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    text += i == 0 ? '[' : ',';
-    text += std::to_string(indices[i]);
+bool Symbols::declare(std::string_view name, std::span<const long> indices, int mode, const Symbol& symbol,
+                      Report& report) {
+  const std::size_t place = place_of(mode);
+  if (names_.size() <= place) names_.resize(place + 1);
+  auto family = names_[place].find(name);
+  if (family == names_[place].end()) {
+    if (!is_free_name(name, symbol.span, report)) return false;
+    family = names_[place].try_emplace(std::string(name)).first;
   }
-  if (!indices.empty()) text += ']';
-  return text;
-}
-
-bool Symbols::declare(const std::string& name, int mode, Symbol symbol, std::string_view family,
-                      const std::vector<long>& indices, Report& report) {
-  if (!is_free_name(std::string(family), symbol.span, report)) return false;
-  const auto [place, is_new] = symbols_.try_emplace(in_mode(mode, name), symbol);
+  const auto [known, is_new] = family->second.add(indices, symbol);
   if (!is_new) {
-    if (auto* said = report.fail("E211", symbol.span, fmt::format("`{}` is defined twice", name), "again here")) {
-      said->related.push_back({place->second.span, "first here"});
+    if (auto* said = report.fail("E211", symbol.span, fmt::format("`{}` is defined twice", indexed(name, indices)),
+                                 "again here")) {
+      said->related.push_back({known->span, "first here"});
     }
     return false;
   }
-  FamilyShape& shape = families_[std::string(family)];
+  const auto found = families_.find(name);
+  FamilyShape& shape = found == families_.end() ? families_[std::string(name)] : found->second;
   if (shape.low.empty()) {
-    shape.low = shape.high = indices;
+    shape.low.assign(indices.begin(), indices.end());
+    shape.high = shape.low;
     shape.kind = symbol.kind;
     shape.dimensions = indices.size();
   }
@@ -66,13 +66,22 @@ bool Symbols::declare(const std::string& name, int mode, Symbol symbol, std::str
   return true;
 }
 
-const Symbol* Symbols::find(const std::string& name, int mode) const {
-  if (mode != Scope::no_mode) {
-    const auto local = symbols_.find(in_mode(mode, name));
-    if (local != symbols_.end()) return &local->second;
-  }
-  const auto found = symbols_.find(name);
-  return found == symbols_.end() ? nullptr : &found->second;
+const Symbol* Symbols::find_in(int mode, const IndexedName& name) const {
+  const std::size_t place = place_of(mode);
+  if (place >= names_.size()) return nullptr;
+  const auto family = names_[place].find(name.name);
+  return family == names_[place].end() ? nullptr : family->second.find(name.indices);
+}
+
+const Symbol* Symbols::find(const IndexedName& name, int mode) const {
+  if (!name.member.empty()) return find_of_world(name.text());
+  const Symbol* local = mode == Scope::no_mode ? nullptr : find_in(mode, name);
+  return local ? local : find_in(Scope::no_mode, name);
+}
+
+const Symbol* Symbols::find_of_world(const std::string& name) const {
+  const auto found = made_by_world_.find(name);
+  return found == made_by_world_.end() ? nullptr : &found->second;
 }
 
 const FamilyShape* Symbols::family(std::string_view name) const {
@@ -87,9 +96,11 @@ bool Symbols::is_family_of_bodies(std::string_view name) const {
 
 std::vector<std::string> Symbols::all() const {
   std::vector<std::string> names;
-  for (const auto& [key, symbol] : symbols_) {
-    const std::size_t colon = key.find(':');  // names in a mode are `mode:name`
-    names.push_back(colon == std::string::npos ? key : key.substr(colon + 1));
+  for (const auto& [name, symbol] : made_by_world_) names.push_back(name);
+  for (const Names& of_mode : names_) {
+    for (const auto& [name, members] : of_mode) {
+      for (const std::vector<long>& indices : members.all()) names.push_back(indexed(name, indices));
+    }
   }
   std::ranges::sort(names);
   for (const char* builtin : {"t", "pi"}) names.emplace_back(builtin);

@@ -2,24 +2,20 @@
 // Every declared name, once.
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include <continuo/language/check/names/indexed_name.hpp>
+#include <continuo/language/check/names/members.hpp>
 #include <continuo/language/check/names/report.hpp>
-#include <continuo/language/text/source.hpp>
 
 namespace continuo::model::detail {
-
-struct Symbol {
-  enum class Kind : unsigned char { definition, base, unknown, table, body };
-  Kind kind;
-  std::size_t index;  // in the list of its kind: Declarations
-  Span span;
-};
 
 /// What is written under a name with and without indices, for messages about indices.
 struct FamilyShape {
@@ -31,12 +27,14 @@ struct FamilyShape {
 class Symbols {
  public:
   /// Names of a mode are found before those of the model. False where the name is taken: that is reported.
-  [[nodiscard]] bool declare(const std::string& name, int mode, Symbol symbol, std::string_view family,
-                             const std::vector<long>& indices, Report& report);
+  [[nodiscard]] bool declare(std::string_view name, std::span<const long> indices, int mode, const Symbol& symbol,
+                             Report& report);
   /// Of the world's own making: of no family, and taken by nobody.
-  void add(const std::string& name, Symbol symbol) { symbols_.try_emplace(name, symbol); }
+  void add(const std::string& name, const Symbol& symbol) { made_by_world_.try_emplace(name, symbol); }
   /// Null where there is none.
-  [[nodiscard]] const Symbol* find(const std::string& name, int mode) const;
+  [[nodiscard]] const Symbol* find(const IndexedName& name, int mode) const;
+  /// Of the world's own making: `ball.x`.
+  [[nodiscard]] const Symbol* find_of_world(const std::string& name) const;
   [[nodiscard]] const FamilyShape* family(std::string_view name) const;
   [[nodiscard]] bool is_family_of_bodies(std::string_view name) const;
   [[nodiscard]] std::vector<std::string> all() const;  // in order, with `t` and `pi`
@@ -46,13 +44,19 @@ class Symbols {
   [[nodiscard]] bool is_lost(std::string_view family) const { return lost_.contains(family); }
 
  private:
-  std::unordered_map<std::string, Symbol> symbols_;
+  struct Hash : std::hash<std::string_view> {
+    using is_transparent = void;
+  };
+  using Names = std::unordered_map<std::string, Members, Hash, std::equal_to<>>;
+
+  [[nodiscard]] const Symbol* find_in(int mode, const IndexedName& name) const;
+
+  std::vector<Names> names_;  // of the model, then of its modes; a name without indices is its family's only member
   std::map<std::string, FamilyShape, std::less<>> families_;
+  std::unordered_map<std::string, Symbol> made_by_world_;
   std::set<std::string, std::less<>> lost_;
 };
 
-/// "u[3]", "a[1,2]".
-[[nodiscard]] std::string indexed(std::string_view name, const std::vector<long>& indices);
 /// "this is time" of t, "3.14159..." of pi, else nothing.
 [[nodiscard]] std::string_view meaning_of_its_own(std::string_view name);
 

@@ -1,6 +1,7 @@
 // continuo/language/check/states/initial_values.cpp
 // Conditions at the start are initial values; once one stands elsewhere all are boundary values.
 #include <algorithm>
+#include <ranges>
 #include <set>
 
 #include <fmt/format.h>
@@ -16,16 +17,15 @@ InitialValues::InitialValues(Expressions& expressions, std::vector<State>& state
       declared_(expressions.workspace.declared),
       run_(expressions.workspace.run),
       states_(states),
-      start_time_(run_.from ? run_.from->value : 0) {}
+      start_time_(run_.from ? run_.from->value : 0),
+      seen_(states.size()),
+      has_wrong_value_(states.size(), false) {}
 
 BoundaryProblem InitialValues::make() {
   bool all_at_start = true;
   const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
   for (std::size_t i = 0; i < declared_.conditions.size(); ++i) {
-    const ConditionText& condition = declared_.conditions[i];
-    Scope scope = condition.scope;
-    const auto& time =
-        times_.emplace_back(expressions_.values.time_setting(condition.text->time, scope, "the time of a condition"));
+    const auto& time = times_.emplace_back(time_of(declared_.conditions[i]));
     if (time && is_elsewhere(*time)) all_at_start = false;
     if (std::ranges::any_of(expressions_.workspace.conditions.of(i).samples, is_elsewhere, &Sample::when))
       all_at_start = false;
@@ -39,6 +39,28 @@ BoundaryProblem InitialValues::make() {
   }
   make_guesses();
   return std::move(made_);
+}
+
+/// A number, as in u[i](0) = ..., is the same for all members of a family.
+std::optional<Setting> InitialValues::time_of(const ConditionText& condition) {
+  const std::size_t index = times_.size();
+  const bool is_number = std::holds_alternative<ast::Number>(condition.text->time.node);
+  if (is_number && index > 0 && times_.back() && declared_.conditions[index - 1].text == condition.text)
+    return times_.back();
+  Scope scope = condition.scope;
+  return expressions_.values.time_setting(condition.text->time, scope, "the time of a condition");
+}
+
+/// Where the state has a value at this time first, and whether that is here.
+std::pair<Span, bool> InitialValues::see(std::size_t state, double time, Span span) {
+  Seen& first = seen_[state];
+  if (!first.is_set) {
+    first = {time, span, true};
+    return {span, true};
+  }
+  if (first.time == time) return {first.span, false};
+  const auto [other, is_new] = later_.try_emplace({state, time}, span);
+  return {other->second, is_new};
 }
 
 /// Of a boundary-value problem: as many as there are numbers to find.
@@ -72,19 +94,21 @@ void InitialValues::place_condition(std::size_t index, bool initial) {
                                                "name what changes with a time, as in x(0)");
   };
   if (value.bad || !time || (!initial && !stands_alone())) {
-    seen_.try_emplace({state, 0.0}, condition.span);
+    has_wrong_value_[state] = true;
+    static_cast<void>(see(state, 0, condition.span));
     return;
   }
-  const auto [first, is_new] = seen_.try_emplace({state, time->value}, condition.span);
+  const auto [first, is_new] = see(state, time->value, condition.span);
   if (!is_new) {
     auto* said = report_.fail("E241", condition.span,
                               fmt::format("`{}({:g})` is given twice", with_primes(base.name, primes), time->value));
-    if (said && first->second != condition.span) said->related.push_back({first->second, "first here"});
+    if (said && first != condition.span) said->related.push_back({first, "first here"});
     return;
   }
-  const NodeId node =
-      expressions_.operations.in_unit(condition.text->value, value, expressions_.workspace.units.of_state(state),
-                                      "`" + with_primes(base.name, primes) + "`");
+  const Measured& unit = expressions_.workspace.units.of_state(state);
+  const bool fits = factor_between(value.measured, unit).has_value();  // then nobody reads the name
+  const NodeId node = expressions_.operations.in_unit(
+      condition.text->value, value, unit, fits ? std::string() : "`" + with_primes(base.name, primes) + "`");
   if (time->value == start_time_ && (initial || entry.samples.empty())) {
     states_[state].initial = node;
     states_[state].span = condition.span;
@@ -104,15 +128,18 @@ void InitialValues::missing_conditions() const {
   for (std::size_t b = 0; b < declared_.bases.size(); ++b) {
     const Base& base = declared_.bases[b];
     if (base.in_world || !base.has_equation || declared_.symbols.is_lost(base.family)) continue;
+    const auto is_missing = [&](int k) {
+      const std::size_t state = base.first + static_cast<std::size_t>(k);
+      return !states_[state].initial.valid() && !has_wrong_value_[state];
+    };
+    if (std::ranges::none_of(std::views::iota(0, base.order), is_missing) || !said.emplace(base.family).second)
+      continue;
     std::vector<std::string> missing, needed;
     for (int k = 0; k < base.order; ++k) {
-      const std::size_t state = base.first + static_cast<std::size_t>(k);
       const std::string text = fmt::format("{}({:g})", with_primes(base.name, k), start_time_);
       needed.push_back(text);
-      const bool wrong = seen_.contains({state, 0.0});
-      if (!states_[state].initial.valid() && !wrong) missing.push_back(text);
+      if (is_missing(k)) missing.push_back(text);
     }
-    if (missing.empty() || !said.insert(base.family).second) continue;
     std::string statement;
     for (const std::string& text : missing) statement += (statement.empty() ? "" : ";  ") + text + " = ...";
     report_.fail("E240", base.span, fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are"),
@@ -123,13 +150,14 @@ void InitialValues::missing_conditions() const {
 void InitialValues::make_guesses() {
   for (const Placed<ast::Guess>& guess : declared_.guesses) {
     Scope scope = guess.scope;
-    const auto key = expressions_.indices.key_of(guess.text->name, scope);
+    const auto key = expressions_.indices.name_of(guess.text->name, scope);
     const Symbol* symbol = key ? declared_.symbols.find(*key, Scope::no_mode) : nullptr;
     if (!key) continue;
     const ast::Name& name = guess.text->name;
     if (!symbol || symbol->kind != Symbol::Kind::base || name.primes >= declared_.bases[symbol->index].order) {
-      report_.fail("E242", name.span,
-                   fmt::format("`{}` is no state, so there is nothing to guess", with_primes(*key, name.primes)));
+      report_.fail(
+          "E242", name.span,
+          fmt::format("`{}` is no state, so there is nothing to guess", with_primes(key->text(), name.primes)));
       continue;
     }
     const std::size_t state = declared_.bases[symbol->index].first + static_cast<std::size_t>(name.primes);

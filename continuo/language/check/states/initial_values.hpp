@@ -24,7 +24,9 @@ class InitialValues {
 
  private:
   void count_conditions() const;
+  [[nodiscard]] std::optional<Setting> time_of(const ConditionText& condition);
   void place_condition(std::size_t index, bool initial);
+  [[nodiscard]] std::pair<Span, bool> see(std::size_t state, double time, Span span);
   void missing_conditions() const;
   void make_guesses();
 
@@ -34,8 +36,17 @@ class InitialValues {
   const RunSettings& run_;
   std::vector<State>& states_;
   double start_time_;
-  std::vector<std::optional<Setting>> times_;            // of the conditions
-  std::map<std::pair<std::size_t, double>, Span> seen_;  // by state and time
+  /// Where a state has a value at a time first.
+  struct Seen {
+    double time = 0;
+    Span span{};
+    bool is_set = false;
+  };
+
+  std::vector<std::optional<Setting>> times_;             // of the conditions
+  std::vector<Seen> seen_;                                // the first value of each state
+  std::vector<bool> has_wrong_value_;                     // of each state: a value that is reported already
+  std::map<std::pair<std::size_t, double>, Span> later_;  // at other times, by state and time
   BoundaryProblem made_;
 };
 

@@ -1,6 +1,8 @@
 // continuo/language/check/states/orders.cpp
 // A variable has the order of its highest derivative anywhere in the text.
 #include <algorithm>
+#include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -50,11 +52,11 @@ const ast::Name* explicit_left(const ast::Equation& equation) {
 /// A variable with a derivative of at least this order; the first sight of it decides its place.
 std::optional<std::size_t> StateOrders::see_base(const ast::Name& name, Scope& scope, int order) {
   if (!name.member.empty()) return std::nullopt;  // of a body: it is there, or the lookup says so
-  const auto indices = expressions_.indices.indices_of(name, scope);
-  if (!indices) return std::nullopt;
-  const std::string key = indexed(name.text, *indices);
-  const Symbol* known = declared_.symbols.find(key, Scope::no_mode);
+  const auto indexed_name = expressions_.indices.name_of(name, scope);
+  if (!indexed_name) return std::nullopt;
+  const Symbol* known = declared_.symbols.find(*indexed_name, Scope::no_mode);
   if (known && known->kind != Symbol::Kind::base) {
+    const std::string key = indexed_name->text();
     const bool unknown = known->kind == Symbol::Kind::unknown;
     if (auto* said = report_.fail(
             "E213", name.span, fmt::format("`{}` cannot have an equation and a definition", key),
@@ -67,9 +69,10 @@ std::optional<std::size_t> StateOrders::see_base(const ast::Name& name, Scope& s
   }
   if (!known) {
     const Symbol symbol{Symbol::Kind::base, declared_.bases.size(), name.span};
-    if (!declared_.symbols.declare(key, Scope::no_mode, symbol, name.text, *indices, report_)) return std::nullopt;
-    declared_.bases.push_back({key, name.text, 0, 0, name.span});
-    known = declared_.symbols.find(key, Scope::no_mode);
+    if (!declared_.symbols.declare(name.text, indexed_name->indices, Scope::no_mode, symbol, report_))
+      return std::nullopt;
+    declared_.bases.push_back({indexed_name->text(), name.text, 0, 0, name.span});
+    known = declared_.symbols.find(*indexed_name, Scope::no_mode);
   }
   Base& base = declared_.bases[known->index];
   if (order > base.order) {
@@ -85,7 +88,7 @@ void StateOrders::see_primes(const ast::Expression& expression, Scope& scope) {
       [&](const auto& node) {
         using T = std::decay_t<decltype(node)>;
         if constexpr (std::is_same_v<T, ast::Name>) {
-          const auto key = expressions_.indices.key_of(node, scope);
+          const auto key = expressions_.indices.name_of(node, scope);
           const Symbol* known = key ? declared_.symbols.find(*key, scope.mode) : nullptr;
           if (!known && (!meaning_of_its_own(node.text).empty() || is_function(node.text))) return;  // said on lookup
           if (!known || known->kind == Symbol::Kind::base) see_base(node, scope, node.primes);
@@ -137,18 +140,37 @@ void StateOrders::see_condition(const ast::Condition& condition, Scope& scope, S
 }
 
 void StateOrders::finish() {
+  std::unordered_map<const ast::Equation*, bool> has_primes_on_right;  // the same for all members of a family
   for (const Placed<ast::Equation>& equation : declared_.equations) {
+    if (!explicit_left(*equation.text)) continue;
+    const auto [known, is_new] = has_primes_on_right.try_emplace(equation.text, false);
+    if (is_new) known->second = has_primes(equation.text->right);
+    if (!known->second) continue;
     Scope scope = equation.scope;
-    if (explicit_left(*equation.text)) see_primes(equation.text->right, scope);
+    see_primes(equation.text->right, scope);
   }
-  for (std::size_t i = 0; i < declared_.conditions.size(); ++i) {
-    Base& base = declared_.bases[declared_.conditions[i].base];
-    base.conditions.push_back(i);
-    if (base.order == 0) base.has_equation = false;
-  }
+  sort_conditions();
   for (const ConditionText& condition : declared_.conditions) {
     Base& base = declared_.bases[condition.base];
     if (!base.has_equation) base.order = std::max(base.order, condition.text->name.primes + 1);
+  }
+}
+
+/// Each base is given its conditions, in the order of the text.
+void StateOrders::sort_conditions() {
+  std::vector<std::size_t> end(declared_.bases.size(), 0);
+  for (const ConditionText& condition : declared_.conditions) ++end[condition.base];
+  std::size_t before = 0;
+  for (std::size_t& place : end) place = std::exchange(before, before + place);  // where the conditions of each begin
+  declared_.conditions_by_base.resize(declared_.conditions.size());
+  for (std::size_t i = 0; i < declared_.conditions.size(); ++i)
+    declared_.conditions_by_base[end[declared_.conditions[i].base]++] = i;
+  std::size_t begin = 0;
+  for (std::size_t b = 0; b < declared_.bases.size(); ++b) {
+    Base& base = declared_.bases[b];
+    base.conditions = std::span(declared_.conditions_by_base).subspan(begin, end[b] - begin);
+    begin = end[b];
+    if (!base.conditions.empty() && base.order == 0) base.has_equation = false;
   }
 }
 

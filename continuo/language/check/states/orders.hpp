@@ -23,6 +23,7 @@ class StateOrders {
  private:
   std::optional<std::size_t> see_base(const ast::Name& name, Scope& scope, int order);
   void see_primes(const ast::Expression& expression, Scope& scope);
+  void sort_conditions();
 
   Declarations& declared_;
   Expressions& expressions_;

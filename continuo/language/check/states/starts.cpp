@@ -29,7 +29,7 @@ class StartSolver {
     visits_.push_back({root});
     while (!visits_.empty()) {
       const Visit visit = visits_.back();
-      if (image_.contains(visit.node)) {
+      if (image(visit.node).valid()) {
         visits_.pop_back();
       } else if (visit.is_open) {
         close(visit);
@@ -37,7 +37,7 @@ class StartSolver {
         open();
       }
     }
-    return image_.at(root);
+    return image(root);
   }
 
  private:
@@ -45,9 +45,6 @@ class StartSolver {
     NodeId node;
     NodeId expression = {};  // of a variable
     bool is_open = false;
-  };
-  struct Hash {
-    std::size_t operator()(NodeId id) const { return id.index; }
   };
 
   void open() {
@@ -62,7 +59,7 @@ class StartSolver {
     const auto again = std::ranges::find(way_, node.number);
     if (again != way_.end()) {
       circle_({again, way_.end()});
-      image_.emplace(id, id);
+      image(id) = id;
       return;
     }
     way_.push_back(node.number);
@@ -73,14 +70,20 @@ class StartSolver {
   void close(const Visit& visit) {
     visits_.pop_back();
     const Node node = graph_[visit.node];
-    NodeId image = visit.node;
+    NodeId made = visit.node;
     if (node.op != Op::variable) {
-      image = with_arguments(graph_, visit.node, [&](NodeId argument) { return image_.at(argument); });
+      made = with_arguments(graph_, visit.node, [&](NodeId argument) { return image(argument); });
     } else {
       way_.pop_back();
-      if (visit.expression.valid()) image = image_.at(visit.expression);
+      if (visit.expression.valid()) made = image(visit.expression);
     }
-    image_.emplace(visit.node, image);
+    image(visit.node) = made;
+  }
+
+  /// What a node becomes; not valid before that is known.
+  NodeId& image(NodeId id) {
+    if (id.index >= images_.size()) images_.resize(std::max<std::size_t>(graph_.size(), id.index + 1));
+    return images_[id.index];
   }
 
   Graph& graph_;
@@ -88,7 +91,7 @@ class StartSolver {
   Circle circle_;
   std::vector<Visit> visits_;
   std::vector<std::uint32_t> way_;  // variables whose expressions are being walked
-  std::unordered_map<NodeId, NodeId, Hash> image_;
+  std::vector<NodeId> images_;      // of the nodes of the graph
 };
 
 void refuse_in_start(Expressions& expressions, std::uint32_t variable, std::string_view why, Span span) {
@@ -144,7 +147,7 @@ void solve_starts(Expressions& expressions, std::vector<State>& states, double s
   StartSolver solver(expressions.workspace.graph, expression_of, circle);
   std::vector<std::pair<State*, NodeId>> solved;  // put in their places when nobody looks for what was written there
   for (State& state : states) {
-    if (state.in_world || !state.initial.valid()) continue;
+    if (state.in_world || !state.initial.valid() || expressions.workspace.graph.value(state.initial)) continue;
     span = state.span;
     solved.emplace_back(&state, solver.solve(expressions.workspace.graph.variable(state.variable)));
   }

@@ -9,20 +9,21 @@
 namespace continuo::model::detail {
 
 std::optional<std::size_t> body_named(const ast::Name& name, Scope& scope, Expressions& expressions) {
-  const auto key = expressions.indices.key_of(name, scope);
-  if (!key) return std::nullopt;
+  const auto indexed_name = expressions.indices.name_of(name, scope);
+  if (!indexed_name) return std::nullopt;
+  const std::string key = indexed_name->text();
   const Symbol* symbol = name.primes == 0 && name.member.empty()
-                             ? expressions.workspace.declared.symbols.find(*key, Scope::no_mode)
+                             ? expressions.workspace.declared.symbols.find(*indexed_name, Scope::no_mode)
                              : nullptr;
   if (symbol && symbol->kind == Symbol::Kind::body) return symbol->index;
   if (expressions.workspace.declared.symbols.is_family_of_bodies(name.text) && !symbol && name.member.empty()) {
-    expressions.lookup.unknown_name(name, *key);  // the index is wrong, or missing
+    expressions.lookup.unknown_name(name, key);  // the index is wrong, or missing
     return std::nullopt;
   }
   if (expressions.workspace.declared.symbols.is_lost(name.text)) return std::nullopt;
   std::vector<std::string> names;
   for (const BodyText& body : expressions.workspace.declared.world.bodies) names.push_back(body.name);
-  const std::string near = did_you_mean(*key, names);
+  const std::string near = did_you_mean(key, names);
   expressions.report.fail("E223", name.span, fmt::format("there is no body `{}`", to_text(name)), {},
                           !near.empty() ? near
                           : names.empty()

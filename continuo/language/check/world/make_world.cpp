@@ -49,7 +49,7 @@ void make_world(Expressions& expressions, WorldAtWork& work, Model& model) {
   made.span = text.span;
   made.length_unit = unit_or_nothing(work.length);
   made.mass_unit = unit_or_nothing(work.mass);
-  const Symbol* measures = workspace.declared.symbols.find("world.kinetic", Scope::no_mode);
+  const Symbol* measures = workspace.declared.symbols.find_of_world("world.kinetic");
   made.first_measure = workspace.declared.bases[measures->index].first;
   WorldSettings(expressions, work).make();
   Bodies(expressions, work, states).make();

@@ -110,7 +110,7 @@ std::optional<std::vector<Thing>> Queries::things_named(const ast::Name& name, S
       for (std::size_t i = 0; i < text_.bodies.size(); ++i)
         if (text_.bodies[i].name.starts_with(begin)) found.push_back(thing_of(i));
     }
-    const Symbol* symbol = expressions_.workspace.declared.symbols.find(name.text, Scope::no_mode);
+    const Symbol* symbol = expressions_.workspace.declared.symbols.find({name.text}, Scope::no_mode);
     if (!symbol || symbol->kind != Symbol::Kind::body) {
       for (std::size_t w = 0; w < work_.made.walls.size(); ++w)
         if (work_.made.walls[w].name == name.text) found.push_back({.wall = w});
@@ -119,7 +119,7 @@ std::optional<std::vector<Thing>> Queries::things_named(const ast::Name& name, S
   if (!found.empty()) return found;
   std::vector<std::string> walls;
   for (const WallDescription& wall : work_.made.walls) walls.push_back(wall.name);
-  const std::string near = is_word && !expressions_.workspace.declared.symbols.find(name.text, Scope::no_mode)
+  const std::string near = is_word && !expressions_.workspace.declared.symbols.find({name.text}, Scope::no_mode)
                                ? did_you_mean(name.text, walls)
                                : std::string();
   if (!near.empty()) {

@@ -55,8 +55,8 @@ void WorldDeclarations::declare(const ast::Model& tree) {
 void WorldDeclarations::declare_items(const std::vector<ast::WorldItem>& items, Scope& scope) {
   for (const ast::WorldItem& item : items) {
     if (const auto* family = std::get_if<ast::WorldFamily>(&item.node)) {
-      expressions_.indices.for_each_index(family->index, family->range, scope,
-                                          [&] { declare_items(family->body, scope); });
+      expressions_.indices.for_each_kept_index(family->index, family->range, scope,
+                                               [&] { declare_items(family->body, scope); });
       continue;
     }
     if (const auto* body = std::get_if<ast::WorldBody>(&item.node)) {
@@ -94,12 +94,12 @@ void WorldDeclarations::declare_pattern(const ast::WorldBodies& bodies, Scope& s
     if (pattern.count > most_written_out) pattern.count = most_written_out + 1;
   }
   for (std::size_t k = 1; k <= pattern.count && expressions_.indices.count_written_out(span); ++k) {
-    if (!declare_body(bodies.name.text, {static_cast<long>(k)}, bodies.name.span)) return;  // said already
+    if (!declare_body(bodies.name.text, std::array{static_cast<long>(k)}, bodies.name.span)) return;  // said already
   }
   world_.patterns.push_back(std::move(pattern));
 }
 
-bool WorldDeclarations::declare_body(const std::string& name, const std::vector<long>& indices, Span span) {
+bool WorldDeclarations::declare_body(const std::string& name, std::span<const long> indices, Span span) {
   constexpr std::size_t most_bodies = 50'000;  // each is six or thirteen states with names of their own
   if (world_.bodies.size() >= most_bodies) {
     report_.fail("E221", world_.span, "the world is too large", fmt::format("more than {} bodies", most_bodies),
@@ -112,7 +112,7 @@ bool WorldDeclarations::declare_body(const std::string& name, const std::vector<
                  "take another name");
     return false;
   }
-  if (!declared_.symbols.declare(key, Scope::no_mode, {Symbol::Kind::body, world_.bodies.size(), span}, name, indices,
+  if (!declared_.symbols.declare(name, indices, Scope::no_mode, {Symbol::Kind::body, world_.bodies.size(), span},
                                  report_))
     return false;
   world_.bodies.push_back({nullptr, {}, span, key, declared_.bases.size()});
@@ -121,7 +121,7 @@ bool WorldDeclarations::declare_body(const std::string& name, const std::vector<
   return true;
 }
 
-void WorldDeclarations::add_base(const std::string& name, const std::string& family, int order, Span span) {
+void WorldDeclarations::add_base(const std::string& name, std::string_view family, int order, Span span) {
   declared_.symbols.add(name, Symbol{Symbol::Kind::base, declared_.bases.size(), span});
   declared_.bases.push_back({.name = name, .family = family, .order = order, .span = span, .in_world = true});
 }

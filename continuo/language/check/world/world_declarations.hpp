@@ -24,9 +24,9 @@ class WorldDeclarations {
   void find_world(const ast::Model& tree);
   void read_dimension(Scope& scope);
   void declare_items(const std::vector<ast::WorldItem>& items, Scope& scope);
-  [[nodiscard]] bool declare_body(const std::string& name, const std::vector<long>& indices, Span span);
+  [[nodiscard]] bool declare_body(const std::string& name, std::span<const long> indices, Span span);
   void declare_pattern(const ast::WorldBodies& bodies, Scope& scope, Span span);
-  void add_base(const std::string& name, const std::string& family, int order, Span span);
+  void add_base(const std::string& name, std::string_view family, int order, Span span);
 
   Declarations& declared_;
   WorldText& world_;

@@ -12,32 +12,34 @@ namespace continuo::model::detail {
 
 /// `ball.x`, `grain[3].y'`, `ball.mass`, `world.kinetic`.
 Value WorldNames::member(const ast::Name& name, Scope& scope, Expressions& expressions) const {
-  const auto key = expressions.indices.key_of(name, scope);
-  if (!key) return expressions.operations.bad();
-  if (const Symbol* symbol = declared_.symbols.find(*key, Scope::no_mode)) {
-    if (scope.is_constant()) return expressions.lookup.not_constant(name.span, *key, scope);
+  const auto indexed_name = expressions.indices.name_of(name, scope);
+  if (!indexed_name) return expressions.operations.bad();
+  const std::string key = indexed_name->text();
+  if (const Symbol* symbol = declared_.symbols.find_of_world(key)) {
+    if (scope.is_constant()) return expressions.lookup.not_constant(name.span, key, scope);
     return expressions.lookup.derivative(name, symbol->index, scope);
   }
   ast::Name owner = name;
   owner.member.clear();
   owner.primes = 0;
-  const auto owner_key = expressions.indices.key_of(owner, scope);
-  const Symbol* symbol = owner_key ? declared_.symbols.find(*owner_key, scope.mode) : nullptr;
+  const IndexedName owner_name{name.text, indexed_name->indices};
+  const std::string owner_key = owner_name.text();
+  const Symbol* symbol = declared_.symbols.find(owner_name, scope.mode);
   if (symbol && symbol->kind == Symbol::Kind::body) return own_of_body(name, symbol->index, expressions);
   if (expressions.report.is_silent()) return expressions.operations.bad();
-  if (name.text == "world") return no_member_of_world(name, *key, expressions);
+  if (name.text == "world") return no_member_of_world(name, key, expressions);
   if (symbol) {
-    expressions.report.fail("E224", name.span, fmt::format("`{}` is no body", *owner_key), {},
+    expressions.report.fail("E224", name.span, fmt::format("`{}` is no body", owner_key), {},
                             "only bodies of a world have a point");
     return expressions.operations.bad();
   }
   if (declared_.symbols.family(name.text) || declared_.symbols.is_lost(name.text))
-    return expressions.lookup.unknown_name(owner, *owner_key);
+    return expressions.lookup.unknown_name(owner, owner_key);
   std::vector<std::string> names;
   for (const BodyText& body : declared_.world.bodies) names.push_back(body.name);
   const std::string near = did_you_mean(name.text, names);
-  expressions.report.fail("E223", name.span, fmt::format("there is no body `{}`", *owner_key), {},
-                          near.empty() ? fmt::format("declare it: world {{ body {} at (0, 0) }}", *owner_key) : near);
+  expressions.report.fail("E223", name.span, fmt::format("there is no body `{}`", owner_key), {},
+                          near.empty() ? fmt::format("declare it: world {{ body {} at (0, 0) }}", owner_key) : near);
   return expressions.operations.bad();
 }
 
@@ -81,7 +83,7 @@ Value WorldNames::no_member_of_world(const ast::Name& name, const std::string& k
 
 bool WorldNames::is_query(const ast::Name& callee, const Scope& scope) const {
   return callee.primes == 0 && callee.indices.empty() && callee.member.empty() && detail::is_query(callee.text) &&
-         !declared_.symbols.find(callee.text, scope.mode) && !declared_.symbols.family(callee.text);
+         !declared_.symbols.find({callee.text}, scope.mode) && !declared_.symbols.family(callee.text);
 }
 
 Value WorldNames::query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const {

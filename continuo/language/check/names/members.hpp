@@ -1,0 +1,40 @@
+// continuo/language/check/names/members.hpp
+// The members of a family by their indices. Where these fill a box, as those of a grid do, a member is found by its
+// place in the box, without hashing and without text.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/check/names/symbol.hpp>
+
+namespace continuo::model::detail {
+
+class Members {
+ public:
+  /// The member with these indices, and whether it is new.
+  std::pair<const Symbol*, bool> add(std::span<const long> indices, const Symbol& symbol);
+  /// Null where there is none.
+  [[nodiscard]] const Symbol* find(std::span<const long> indices) const;
+  /// The indices of all members.
+  [[nodiscard]] std::vector<std::vector<long>> all() const;
+
+ private:
+  struct Box {
+    std::vector<long> low{}, size{};     // of each index
+    std::vector<std::uint32_t> cells{};  // the last index runs fastest
+  };
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  [[nodiscard]] std::uint32_t& cell_for(std::span<const long> indices);
+  [[nodiscard]] bool widen(std::span<const long> indices);
+
+  std::vector<Symbol> symbols_;
+  Box box_;
+  std::map<std::vector<long>, std::uint32_t> scattered_;  // those that would leave the box nearly empty
+};
+
+}  // namespace continuo::model::detail
