@@ -258,13 +258,21 @@ ast::Mode Parser::parse_mode() {
   return mode;
 }
 
+/// `for i in 1..N, j in 1..M { ... }` is a family of families.
 ast::Family Parser::parse_family(Context context) {
   auto [index, range] = parse_index();
   indices_.push_back(index.text);
-  const Context inside = context == Context::mode ? Context::mode : Context::family;
-  std::vector<Statement> body = parse_statements("`{` with what is repeated", inside);
+  std::vector<Statement> body;
+  if (accept(TokenKind::comma)) {
+    const Nesting nesting(*this);
+    const std::uint32_t begin = current().span.begin;
+    ast::Family inner = parse_family(context);
+    body.push_back({std::move(inner), since(begin)});
+  } else {
+    body = parse_statements("`{` with what is repeated", context == Context::mode ? Context::mode : Context::family);
+    expect_statement_end();
+  }
   indices_.pop_back();
-  expect_statement_end();
   return {std::move(index), std::move(range), std::move(body)};
 }
 

@@ -112,6 +112,7 @@ class Parser {
   [[nodiscard]] Tree parse_round();
   [[nodiscard]] Tree parse_conditional();
   [[nodiscard]] Tree parse_sum();
+  [[nodiscard]] Tree parse_sum_over(std::uint32_t begin);
   [[nodiscard]] Tree parse_name_or_call();
   [[nodiscard]] Tree parse_arguments(ast::Name callee, int height);
   [[nodiscard]] Tree with_unit_after(Tree value);
@@ -187,6 +188,7 @@ class Parser {
   void parse_tolerances(ast::Run& run, bool relative);
   [[nodiscard]] ast::Plot parse_plot();
   [[nodiscard]] ast::Draw parse_draw();
+  [[nodiscard]] ast::DrawFamily parse_draw_family();
   [[nodiscard]] ast::DrawItem parse_draw_item();
   [[nodiscard]] ast::Shape parse_shape();
   [[nodiscard]] ast::Expression parse_point();

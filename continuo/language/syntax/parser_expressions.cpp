@@ -299,11 +299,34 @@ Tree Parser::parse_sum() {
   const Token word = advance();
   const Token open = advance();
   ++round_brackets_;
+  Tree sum = parse_sum_over(word.span.begin);
+  go_on_inside_brackets();
+  if (!at(TokenKind::close_round)) {
+    if (at_statement_end())
+      fail(error("E113", open.span, "this bracket is not closed", "opened here", "close it with `)`"));
+    left_over({});
+  }
+  advance();
+  --round_brackets_;
+  sum.expression.span = since(word.span.begin);
+  return sum;
+}
+
+/// `i in 1..N, j in 1..M: u[i,j]` is a sum of sums.
+Tree Parser::parse_sum_over(std::uint32_t begin) {
   int height = 0;
   auto [index, range] = parse_index(&height);
   indices_.push_back(index.text);
   std::optional<ValuePtr<Expression>> condition;
   go_on_inside_brackets();
+  if (accept(TokenKind::comma)) {
+    const Nesting nesting(*this);
+    go_on_inside_brackets();
+    Tree inner = parse_sum_over(current().span.begin);
+    indices_.pop_back();
+    return grow(ast::Sum{std::move(index), std::move(range), std::nullopt, std::move(inner.expression)}, since(begin),
+                std::max(height, inner.height));
+  }
   if (accept_word("where") || accept_word("if")) {
     Tree tree = parse_tree(Level::logical_or);
     require_single(tree.expression);
@@ -315,17 +338,9 @@ Tree Parser::parse_sum() {
   advance();
   Tree body = parse_tree(Level::logical_or);
   require_single(body.expression);
-  go_on_inside_brackets();
-  if (!at(TokenKind::close_round)) {
-    if (at_statement_end())
-      fail(error("E113", open.span, "this bracket is not closed", "opened here", "close it with `)`"));
-    left_over({});
-  }
-  advance();
-  --round_brackets_;
   indices_.pop_back();
   return grow(ast::Sum{std::move(index), std::move(range), std::move(condition), std::move(body.expression)},
-              since(word.span.begin), std::max(height, body.height));
+              since(begin), std::max(height, body.height));
 }
 
 Tree Parser::parse_name_or_call() {

@@ -188,16 +188,28 @@ ast::Draw Parser::parse_draw() {
   return draw;
 }
 
+ast::DrawFamily Parser::parse_draw_family() {
+  auto [index, range] = parse_index();
+  indices_.push_back(index.text);
+  std::vector<ast::DrawItem> body;
+  if (accept(TokenKind::comma)) {
+    const Nesting nesting(*this);
+    const std::uint32_t begin = current().span.begin;
+    ast::DrawFamily inner = parse_draw_family();
+    body.push_back({std::move(inner), since(begin)});
+  } else {
+    read_block("`{` with what is drawn for each", [&] { body.push_back(parse_draw_item()); });
+  }
+  indices_.pop_back();
+  return {std::move(index), std::move(range), std::move(body)};
+}
+
 ast::DrawItem Parser::parse_draw_item() {
   const Nesting nesting(*this);
   const std::uint32_t begin = current().span.begin;
   if (accept_word("for")) {
-    auto [index, range] = parse_index();
-    indices_.push_back(index.text);
-    std::vector<ast::DrawItem> body;
-    read_block("`{` with what is drawn for each", [&] { body.push_back(parse_draw_item()); });
-    indices_.pop_back();
-    return {ast::DrawFamily{std::move(index), std::move(range), std::move(body)}, since(begin)};
+    ast::DrawFamily family = parse_draw_family();
+    return {std::move(family), since(begin)};
   }
   ast::Shape shape = parse_shape();
   return {std::move(shape), since(begin)};

@@ -285,9 +285,16 @@ ast::WorldFamily Parser::parse_world_family() {
   auto [index, range] = parse_index();
   indices_.push_back(index.text);
   std::vector<ast::WorldItem> body;
-  read_block("`{` with what is repeated", [&] { body.push_back(parse_world_item()); });
+  if (accept(TokenKind::comma)) {
+    const Nesting nesting(*this);
+    const std::uint32_t begin = current().span.begin;
+    ast::WorldFamily inner = parse_world_family();
+    body.push_back({std::move(inner), since(begin)});
+  } else {
+    read_block("`{` with what is repeated", [&] { body.push_back(parse_world_item()); });
+    expect_statement_end();
+  }
   indices_.pop_back();
-  expect_statement_end();
   return {std::move(index), std::move(range), std::move(body)};
 }
 
