@@ -1,4 +1,10 @@
 // `for`, `sum` and indices, against systems written out by hand.
+#include <map>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "check_helpers.hpp"
 
 namespace continuo::model {
@@ -57,6 +63,87 @@ TEST(CheckFamilies, AnIndexOutOfRangeNamesTheIndexAndTheSize) {
   EXPECT_EQ(place(message), "1:25");
   EXPECT_EQ(message.message, "`u[4]` is out of range");
   EXPECT_EQ(message.label, "`u` goes from `u[1]` to `u[3]`");
+}
+
+TEST(CheckFamilies, SeveralIndicesAreFamiliesInsideEachOther) {
+  const std::string body = "{ u[i,j]' = i*u[i,j] + 10*j\nu[i,j](0) = i + 100*j }\n", run = "run 0..1\n";
+  const std::string ends = "output s = sum(i in 1..3, j in 1..i where j != 2: u[i,j])\n" + run;
+  const std::string inside = "output s = sum(i in 1..3: sum(j in 1..i where j != 2: u[i,j]))\n" + run;
+  const Model one = good("for i in 1..3, j in 1..i " + body + ends);
+  const Model other = good("for i in 1..3 { for j in 1..i " + body + "}\n" + inside);
+  ASSERT_EQ(one.states.size(), 6U);
+  for (std::size_t i = 0; i < one.states.size(); ++i) {
+    EXPECT_EQ(one.states[i].column, other.states[i].column);
+    EXPECT_EQ(rate(one, one.states[i].column), rate(other, one.states[i].column));
+  }
+  EXPECT_EQ(one.states[4].column, "u[3,2]");
+  EXPECT_EQ(value_of(one, "s"), 101 + 102 + 103 + 303);
+  EXPECT_EQ(value_of(one, "s"), value_of(other, "s"));
+}
+
+TEST(CheckFamilies, SeveralIndicesStandWhereverAFamilyDoes) {
+  const Model model = good(R"(for i in 1..2, j in 1..3 { x[i,j]' = 0; x[i,j](0) = 0 }
+initially { for i in 1..2, j in 1..3 { x[i,j] := 10*i + j } }
+draw { for i in 1..2, j in 1..3 { ball (i, x[i,j]) radius 0.1 } }
+run 0..1
+)");
+  EXPECT_EQ(model.schedule.at(0).actions.size(), 6U);
+  EXPECT_EQ(model.drawing.size(), 6U);
+}
+
+/// A stencil with boundaries by conditions, of a random shape, and the same system with every equation written by hand.
+TEST(CheckFamilies, RandomGridsAreTheSystemWrittenOut) {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto n = std::uniform_int_distribution(1, 5)(random), m = std::uniform_int_distribution(1, 5)(random);
+    const auto low = std::uniform_int_distribution(-3, 3)(random);
+    std::string grid = fmt::format("param L = {}, N = {}, M = {}\n", low, low + n - 1, m), written;
+    grid += "for i in L..N, j in 1..M {\n  u[i,j](0) = 3*i + 5*j + i*j\n  u[i,j]' = ";
+    grid +=
+        "(if i > L then u[i-1,j] else 7) + (if i < N then 2*u[i+1,j] else 11) + (if j == 1 then 13 else 3*u[i,j-1])"
+        " + (if not j < M then i else 5*u[i,j+1]) - 4*u[i,j]\n}\nrun 0..1\n";
+    const auto name = [&](int i, int j) { return fmt::format("u{}x{}", i - low, j); };
+    for (int i = low; i < low + n; ++i) {
+      for (int j = 1; j <= m; ++j) {
+        written +=
+            fmt::format("{0}(0) = {1}\n{0}' = {2} + {3} + {4} + {5} - 4*{0}\n", name(i, j), 3 * i + 5 * j + i * j,
+                        i > low ? name(i - 1, j) : "7", i < low + n - 1 ? "2*" + name(i + 1, j) : "11",
+                        j == 1 ? "13" : "3*" + name(i, j - 1), j < m ? "5*" + name(i, j + 1) : fmt::format("({})", i));
+      }
+    }
+    const Model family = good(grid), plain = good(written + "run 0..1\n");
+    ASSERT_EQ(family.states.size(), plain.states.size());
+    for (std::size_t k = 0; k < family.states.size(); ++k)
+      EXPECT_EQ(rate(family, family.states[k].column), rate(plain, plain.states[k].column)) << grid;
+  }
+}
+
+TEST(CheckFamilies, OnlyWhatTheIndicesRuleOutMayLieOutside) {
+  const std::string family = "param N = 3, k = 1\nfor i in 1..N { u[i](0) = 0; u[i]' = ";
+  static_cast<void>(good(family + "if i < N then u[i+1] else 0 }\nrun 0..1\n"));
+  EXPECT_EQ(said(family + "if k < 2 then u[i+1] else 0 }\nrun 0..1\n", "E220").message, "`u[4]` is out of range");
+  EXPECT_EQ(said(family + "if i < N then u[i+2] else 0 }\nrun 0..1\n", "E220").message, "`u[4]` is out of range");
+  EXPECT_EQ(said(family + "if i < N then u[i+1,1] else 0 }\nrun 0..1\n", "E219").message, "`u` needs one index");
+  EXPECT_EQ(said(family + "if i < 9 then 0 else w[i] }\nrun 0..1\n", "E210").message, "there is no `w[1]`");
+}
+
+/// Members in any order, with gaps, far from each other, and under one name with other numbers of indices.
+TEST(CheckFamilies, MembersAreFoundInWhateverOrderTheyCome) {
+  std::mt19937 random(11);
+  for (const int spread : {3, 40, 100'000'000}) {
+    std::uniform_int_distribution index(-spread, spread);
+    std::map<std::pair<int, int>, int> values;
+    std::string text;
+    for (int k = 0; k < 60; ++k) {
+      const std::pair at(index(random), index(random));
+      if (!values.try_emplace(at, k).second) continue;
+      text += fmt::format("param p[{},{}] = {}\n", at.first, at.second, k);
+    }
+    text += "x' = 1\nx(0) = 0\n";
+    for (const auto& [at, k] : values) text += fmt::format("output o{} = p[{},{}]\n", k, at.first, at.second);
+    const Model model = good(text + "run 0..1\n");
+    for (const auto& [at, k] : values) EXPECT_EQ(value_of(model, fmt::format("o{}", k)), k);
+  }
 }
 
 TEST(CheckFamilies, IndicesAreWholeAndWhereTheyBelong) {

@@ -96,6 +96,12 @@ Value DefinitionValues::constant(std::size_t index, const ast::Name& name, const
   return entry(index).constant;
 }
 
+std::optional<NodeId> DefinitionValues::structural_value(std::size_t definition) {
+  const Entry& found = entry(definition);
+  const bool is_known = found.structural && found.constant_progress == Progress::done && !found.constant.bad;
+  return is_known ? std::optional(found.constant.node) : std::nullopt;
+}
+
 void DefinitionValues::find_constant(std::size_t index, const Scope& outer) {
   const Definition& definition = workspace_.declared.definitions[index];
   entry(index).constant_progress = Progress::busy;

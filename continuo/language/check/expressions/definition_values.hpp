@@ -23,6 +23,8 @@ class DefinitionValues {
   [[nodiscard]] const Value& written(std::size_t definition) { return entry(definition).value; }
   /// Decides the size of a family, so that it cannot change later.
   [[nodiscard]] bool is_structural(std::size_t definition) { return entry(definition).structural; }
+  /// The value of one that decides the size of a family: nothing where it does not.
+  [[nodiscard]] std::optional<NodeId> structural_value(std::size_t definition);
   /// Parameters, each after those it needs.
   [[nodiscard]] const std::vector<std::size_t>& evaluation_order() const { return evaluation_order_; }
 

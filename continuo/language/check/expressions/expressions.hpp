@@ -7,6 +7,7 @@
 #pragma once
 #include <deque>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <continuo/language/check/expressions/calls.hpp>
@@ -55,6 +56,7 @@ struct Workspace {
   std::vector<NodeId> solved{};           // highest derivative of each base where the model has one mode; empty before
   std::size_t written_out = 0;            // members of families and terms of sums so far
   std::deque<Index> kept_indices{};       // of the statements that stand in families
+  std::unordered_map<std::uint32_t, Choice> choices{};  // conditions of parameters, by node
 };
 
 /// The translators, reporting to one report: that of the check, or a silent one for a trial.

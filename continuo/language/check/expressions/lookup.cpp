@@ -47,9 +47,16 @@ Value Lookup::lookup(const ast::Name& name, Scope& scope) const {
   const auto indexed_name = expressions_.indices.name_of(name, scope);
   if (!indexed_name) return operations_.bad();
   const Symbol* symbol = workspace_.declared.symbols.find(*indexed_name, scope.mode);
+  if (!symbol && scope.ruled_out && is_outside_of_family(name)) return operations_.of_number(0);
   if (symbol && symbol->kind == Symbol::Kind::base && !scope.is_constant() && !scope.moment)
     return derivative(name, symbol->index, scope);
   return of_symbol(name, symbol, indexed_name->text(), scope);
+}
+
+/// It has as many indices as its family, and no member has these.
+bool Lookup::is_outside_of_family(const ast::Name& name) const {
+  const FamilyShape* family = workspace_.declared.symbols.family(name.text);
+  return family && family->dimensions > 0 && name.indices.size() == family->dimensions;
 }
 
 Value Lookup::of_symbol(const ast::Name& name, const Symbol* symbol, const std::string& key, Scope& scope) const {
@@ -233,6 +240,10 @@ Value Lookup::unknown_name(const ast::Name& name, const std::string& key, std::s
   return operations_.bad();
 }
 
+Measured Lookup::highest_unit(std::size_t base, const Scope& scope) const {
+  return workspace_.time.per_time(workspace_.units.of(base, workspace_.declared.bases[base].order - 1, scope.depth));
+}
+
 Value Lookup::derivative(const ast::Name& name, std::size_t index, Scope& scope) const {
   const Base& base = workspace_.declared.bases[index];
   if (name.primes < base.order) {
@@ -246,8 +257,7 @@ Value Lookup::derivative(const ast::Name& name, std::size_t index, Scope& scope)
   }
   if (name.primes == base.order) {
     if (scope.highest) scope.highest->push_back(static_cast<std::uint32_t>(index));
-    return {workspace_.graph.variable(highest_begin + static_cast<std::uint32_t>(index)),
-            workspace_.time.per_time(workspace_.units.of(index, base.order - 1, scope.depth))};
+    return {workspace_.graph.variable(highest_begin + static_cast<std::uint32_t>(index)), highest_unit(index, scope)};
   }
   report_.fail("E218", name.span, fmt::format("`{}` is not to be had", with_primes(base.name, name.primes)),
                fmt::format("the highest derivative in the equations is `{}`", with_primes(base.name, base.order)));

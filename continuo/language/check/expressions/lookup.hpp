@@ -22,6 +22,8 @@ class Lookup {
   [[nodiscard]] Value lookup(const ast::Name& name, Scope& scope) const;
   /// Of the variable of this index; its highest derivative is noted in the scope.
   [[nodiscard]] Value derivative(const ast::Name& name, std::size_t base, Scope& scope) const;
+  /// Of the highest derivative of the variable of this index.
+  [[nodiscard]] Measured highest_unit(std::size_t base, const Scope& scope) const;
   /// Of `energy` and of the world; its node is not valid where there is none.
   [[nodiscard]] Value total_energy(Span span, Scope& scope) const;
   /// The kinetic and the potential energy of the world; empty without bodies.
@@ -34,6 +36,7 @@ class Lookup {
  private:
   [[nodiscard]] Value of_symbol(const ast::Name& name, const Symbol* symbol, const std::string& key,
                                 Scope& scope) const;
+  [[nodiscard]] bool is_outside_of_family(const ast::Name& name) const;
   [[nodiscard]] Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
   [[nodiscard]] Value without_time(const ast::Name& name, const Scope& scope) const;
   [[nodiscard]] Value not_a_value(const ast::Name& name) const;

@@ -137,15 +137,41 @@ Value Translator::binary(const ast::Binary& node, Scope& scope) const {
   return {.node = g.apply(op, left, right), .condition = true};
 }
 
+/// What a condition comes to that consists of numbers, indices and parameters that decide the size of a family: these
+/// change only when the model is read again.
+Choice Translator::known_choice(NodeId condition) const {
+  Graph& g = workspace_.graph;
+  if (g[condition].op == Op::constant) return g.is(condition, 0) ? Choice::no : Choice::yes;
+  const auto [found, is_new] = workspace_.choices.try_emplace(condition.index, Choice::open);
+  if (!is_new) return found->second;
+  const Layout& layout = workspace_.layout;
+  const auto value_of = [&](std::uint32_t variable) -> std::optional<NodeId> {
+    if (variable < layout.parameters || variable >= layout.inputs) return std::nullopt;
+    return workspace_.definitions.structural_value(workspace_.declared.parameters[variable - layout.parameters]);
+  };
+  for (const std::uint32_t variable : variables_of(g, condition)) {
+    if (!value_of(variable)) return Choice::open;
+  }
+  const NodeId value = substitute(g, condition, value_of);
+  if (g[value].op == Op::constant) found->second = g.is(value, 0) ? Choice::no : Choice::yes;
+  return found->second;
+}
+
 Value Translator::conditional(const ast::Conditional& node, Span span, Scope& scope) const {
   Value condition = translate(*node.condition, scope);
-  Term yes{*node.when_true, translate(*node.when_true, scope)},
-      no{*node.when_false, translate(*node.when_false, scope)};
+  const Choice choice = condition.bad ? Choice::open : known_choice(condition.node);
+  const auto branch = [&](const ast::Expression& text, bool is_taken) {
+    Scope inner = scope;
+    inner.ruled_out = scope.ruled_out || !is_taken;
+    return Term{text, translate(text, inner)};
+  };
+  Term yes = branch(*node.when_true, choice != Choice::no), no = branch(*node.when_false, choice != Choice::yes);
   if (!operations_.want_condition(*node.condition, condition)) return operations_.bad();
   if (yes.value.bad || no.value.bad) return operations_.bad();
   const bool conditions = yes.value.condition && no.value.condition;
   if (!conditions && !operations_.want_numbers(yes, no)) return operations_.bad();
   if (!align(yes, no, span, scope)) return operations_.bad();
+  if (choice != Choice::open) condition.node = workspace_.graph.truth(choice == Choice::yes);
   return {.node = workspace_.graph.select(condition.node, yes.value.node, no.value.node),
           .measured = common(yes.value.measured, no.value.measured),
           .condition = conditions};

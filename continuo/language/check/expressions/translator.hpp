@@ -23,6 +23,7 @@ class Translator {
   [[nodiscard]] Value unary(const ast::Unary& node, Scope& scope) const;
   [[nodiscard]] Value binary(const ast::Binary& node, Scope& scope) const;
   [[nodiscard]] Value conditional(const ast::Conditional& node, Span span, Scope& scope) const;
+  [[nodiscard]] Choice known_choice(NodeId condition) const;
   [[nodiscard]] Value quantity(const ast::Quantity& node, Scope& scope) const;
   [[nodiscard]] Value sum(const ast::Sum& node, Scope& scope) const;
 

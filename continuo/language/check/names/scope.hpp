@@ -44,6 +44,7 @@ struct Scope : Instance {
   const ast::Expression* moment = nullptr;  // of a condition: what changes is named with its time, x(0)
   std::vector<std::uint32_t>* highest = nullptr;  // notes the bases whose highest derivatives stand in the expression
   std::size_t depth = 0;                          // of expressions and definitions inside each other
+  bool ruled_out = false;  // by the indices: `if i > 1 then u[i-1] else 0` at i = 1, where u[0] is not looked for
 
   [[nodiscard]] bool is_constant() const { return !constant.empty(); }
 };
@@ -61,6 +62,9 @@ struct Term {
   const ast::Expression& text;
   Value value;
 };
+
+/// Which branch of `if` is taken, where that is known when the model is read.
+enum class Choice : unsigned char { open, yes, no };
 
 /// How far something is that is found when it is first asked for.
 enum class Progress : unsigned char { untouched, busy, done };
