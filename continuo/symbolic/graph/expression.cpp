@@ -18,18 +18,22 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
   return h * 0xff51afd7ed558ccdu;  // multiplier of MurmurHash3's finaliser (A. Appleby, public domain)
 }
 
-/// Where a node is looked for first. Nodes of the same shape follow each other here as their arguments do, so that the
-/// members of a family are neighbours in the table and not in all corners of the memory.
-std::uint64_t home(const Node& node) {
+/// Where a node is looked for first: at `place` beyond a few points that its shape decides. Nodes of one shape follow
+/// each other so as their arguments do: the members of a family are neighbours in the table, not in all its corners.
+struct Home {
+  std::uint64_t shape, place;
+};
+
+Home home(const Node& node) {
   constexpr std::uint32_t near = 1u << 17;
-  if (node.op == Op::variable) return node.number + mix(0, node.number >> 24);
+  if (node.op == Op::variable) return {mix(0, node.number >> 24), node.number};
   const std::uint32_t a = node.a.index, b = node.b.valid() ? node.b.index : a, c = node.c.valid() ? node.c.index : a;
   const std::uint32_t to_b = b - a + near, to_c = c - a + near;
   const bool moves_together = to_b < 2 * near && to_c < 2 * near;  // else an argument is the same for all members
-  const std::uint64_t shape = moves_together ? (std::uint64_t{to_b} << 32) | to_c : 0;
-  const std::uint64_t h = mix(mix(static_cast<std::uint64_t>(node.op), node.number), shape) +
-                          mix(0, std::bit_cast<std::uint64_t>(node.value));
-  return (h ^ (h >> 29)) + (moves_together ? a : std::uint64_t{a} + b + c);
+  const std::uint64_t distances = moves_together ? (std::uint64_t{to_b} << 32) | to_c : 0;
+  const std::uint64_t shape = mix(mix(static_cast<std::uint64_t>(node.op), node.number), distances) +
+                              mix(0, std::bit_cast<std::uint64_t>(node.value));
+  return {shape ^ (shape >> 29), moves_together ? a : std::uint64_t{a} + b + c};
 }
 
 /// Where it is looked for from then on.
@@ -50,10 +54,14 @@ bool same(const Node& p, const Node& q) {
 std::size_t slot_of(const Node& node, const std::vector<Node>& nodes, const std::vector<std::uint32_t>& slots) {
   const auto ends_at = [&](std::size_t slot) { return slots[slot] == empty || same(nodes[slots[slot]], node); };
   const std::size_t mask = slots.size() - 1;
-  std::size_t slot = home(node) & mask;
-  if (ends_at(slot)) return slot;
+  Home near = home(node);
+  for (int tries = 0; tries < 4; ++tries) {
+    const std::size_t slot = (near.shape + near.place) & mask;
+    if (ends_at(slot)) return slot;
+    near.shape = mix(near.shape, 1);
+  }
   const std::uint64_t h = hash(node), stride = (h >> 32) | 1;  // slots at home are taken in long rows: leap over them
-  slot = h & mask;
+  std::size_t slot = h & mask;
   while (!ends_at(slot)) slot = (slot + stride) & mask;
   return slot;
 }
