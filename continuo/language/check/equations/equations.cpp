@@ -21,18 +21,34 @@ SolvedEquations Equations::solve() {
   return std::move(made_);
 }
 
+/// `x' = ...` where x' is the highest derivative of x: what it measures. Its node is not needed where the right side
+/// holds no highest derivative.
+std::optional<Value> Equations::explicit_left(const ast::Equation& equation, Scope& scope,
+                                              std::vector<std::uint32_t>& held) const {
+  const auto* name = std::get_if<ast::Name>(&equation.left.node);
+  if (!name || name->primes == 0 || !name->member.empty()) return std::nullopt;
+  const auto indexed_name = expressions_.indices.name_of(*name, scope);
+  const Symbol* symbol = indexed_name ? declared_.symbols.find(*indexed_name, scope.mode) : nullptr;
+  if (!symbol || symbol->kind != Symbol::Kind::base) return std::nullopt;
+  const Base& base = declared_.bases[symbol->index];
+  if (base.in_world || base.order != name->primes) return std::nullopt;
+  held.push_back(static_cast<std::uint32_t>(symbol->index));
+  return Value{.node = {}, .measured = expressions_.lookup.highest_unit(symbol->index, scope)};
+}
+
 /// Both sides brought to one unit: left - right = 0, and what it holds.
 EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) const {
   Scope scope = equation.scope;
   std::vector<std::uint32_t> on_left, held;
   scope.highest = &on_left;
-  Term left{equation.text->left, expressions_.translator.translate(equation.text->left, scope)};
+  const std::optional<Value> highest = explicit_left(*equation.text, scope, on_left);
+  Term left{equation.text->left, highest ? *highest : expressions_.translator.translate(equation.text->left, scope)};
   scope.highest = &held;
   Term right{equation.text->right, expressions_.translator.translate(equation.text->right, scope)};
   EquationAtWork work;
   work.span = equation.span;
-  const auto* name = std::get_if<ast::Name>(&equation.text->left.node);
-  const bool explicit_one = name && on_left.size() == 1 && held.empty();
+  const bool is_explicit = highest && held.empty();
+  if (highest && !is_explicit) left.value.node = graph_.variable(highest_begin + on_left.front());
   held.insert(held.end(), on_left.begin(), on_left.end());
   std::ranges::sort(held);
   held.erase(std::unique(held.begin(), held.end()), held.end());
@@ -42,8 +58,11 @@ EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) c
     work.bad = true;
     return work;
   }
-  if (explicit_one) work.solution = right.value.node;
-  work.residual = graph_.subtract(left.value.node, right.value.node);
+  if (is_explicit) {
+    work.solution = right.value.node;
+  } else {
+    work.residual = graph_.subtract(left.value.node, right.value.node);
+  }
   return work;
 }
 

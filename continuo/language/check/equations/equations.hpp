@@ -2,6 +2,8 @@
 // Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
 // together (accelerations coupled through a mass matrix). An equation without such a derivative determines an unknown.
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <continuo/language/check/equations/equation_counts.hpp>
@@ -30,6 +32,8 @@ class Equations {
   [[nodiscard]] SolvedEquations solve();
 
  private:
+  [[nodiscard]] std::optional<Value> explicit_left(const ast::Equation& equation, Scope& scope,
+                                                   std::vector<std::uint32_t>& held) const;
   [[nodiscard]] EquationAtWork read_equation(const Placed<ast::Equation>& equation) const;
   void solve_mode(std::size_t mode);
   void sort_out_algebraic(ModeAtWork& work);

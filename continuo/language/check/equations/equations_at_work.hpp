@@ -9,8 +9,8 @@
 namespace continuo::model::detail {
 
 struct EquationAtWork {
-  NodeId residual;                   // left - right
-  NodeId solution;                   // right, where the left is a highest derivative alone
+  NodeId residual;                   // left - right; not valid where there is a solution
+  NodeId solution;                   // right, where the left is the only highest derivative, alone
   std::vector<std::uint32_t> holds;  // the highest derivatives in it, as indices of bases, ascending
   std::size_t open = 0;              // how many of these no equation has determined yet
   bool used = false;

@@ -91,7 +91,7 @@ bool Indices::count_written_out(Span span) const {
   if (count > most_written_out + 1) return false;  // said already
   report_.fail("E221", span, "the model is too large",
                fmt::format("more than {} members of families and terms of sums", most_written_out),
-               "take fewer points, or write this system in C++");
+               "each takes about 1 kB of memory: take fewer points, or write this system in C++");
   return false;
 }
 

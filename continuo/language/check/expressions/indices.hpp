@@ -14,8 +14,9 @@ class Expressions;
 class Report;
 struct Workspace;
 
-/// More members of families and terms of sums than this are a mistake, or a job for C++.
-inline constexpr std::size_t most_written_out = 500'000;
+/// More members of families and terms of sums than this are a mistake, or a job for C++: a member with its equation
+/// takes about a kilobyte, and a browser has four gigabytes.
+inline constexpr std::size_t most_written_out = sizeof(void*) < 8 ? 500'000 : 4'000'000;
 
 class Indices {
  public:
