@@ -42,7 +42,7 @@ enum class SeriesCode : std::uint8_t {
   square_root,
   exponential,
   logarithm,
-  power,        // a^b, where b has no coefficient but that of order 0
+  power,        // a^b, where b is one number for all members
   sine_cosine,  // two results, the cosines after the sines; of the next three the second is an aid
   hyperbolic_sine_cosine,
   tangent,             // and 1 + tan^2
@@ -81,10 +81,17 @@ struct LinearPiece {
   Real from, value, slope;
 };
 
+/// One operation, or `count` equal ones with operands and results side by side.
+struct SeriesOperation {
+  SeriesCode code;
+  std::uint32_t result, count, a, b, c;
+};
+
 template <class Real>
 class SeriesProgram {
  public:
   using Register = std::uint32_t;
+  using Operation = SeriesOperation;
   /// The piece of a table that holds x.
   using Pieces = std::function<LinearPiece<Real>(const Real& x)>;
 
@@ -95,6 +102,7 @@ class SeriesProgram {
     lists_.clear();
     tables_.clear();
     registers_ = 0;
+    begun_ = 0;
     has_corners_ = false;
   }
 
@@ -103,6 +111,7 @@ class SeriesProgram {
   /// A number: the coefficients of higher orders are 0.
   [[nodiscard]] Register add_number(const Real& value) {
     numbers_.push_back({registers_, value});
+    begun_ = 0;
     return registers_++;
   }
   /// The n-th number that was added is another one from the next `begin` on.
@@ -130,18 +139,31 @@ class SeriesProgram {
 
   [[nodiscard]] bool has_corners() const { return has_corners_; }
   [[nodiscard]] std::size_t register_count() const { return registers_; }
+  [[nodiscard]] std::size_t table_count() const { return tables_.size(); }
+  /// In the order in which they are evaluated. Operand a of a copy is the place of its first member in `copied`.
+  [[nodiscard]] std::span<const Operation> operations() const { return operations_; }
+  [[nodiscard]] std::span<const Register> copied() const { return lists_; }
 
   /// Room for coefficients up to this order. Those of the numbers are there; the others are the caller's and become
   /// what `evaluate` computes.
   void begin(std::size_t order) {
-    // Rows a power of two apart would share few places of the cache.
-    row_size_ = registers_ / line * line + (registers_ / line % 2 == 0 ? line : 2 * line);
-    if (rows_.size() < (order + 1) * row_size_) rows_.resize((order + 1) * row_size_);
-    for (const Number& number : numbers_) {
-      row(0)[number.place] = number.value;
-      for (std::size_t k = 1; k <= order; ++k) row(k)[number.place] = Real(0);
+    const std::size_t size = (order + 1) * row_size();
+    if (begun_ != size) {
+      row_size_ = row_size();
+      if (rows_.size() < size) rows_.resize(size);
+      for (const Number& number : numbers_)
+        for (std::size_t k = 1; k <= order; ++k) row(k)[number.place] = Real(0);
+      begun_ = size;
     }
+    for (const Number& number : numbers_) row(0)[number.place] = number.value;
   }
+  /// Coefficients of neighbouring orders are so far apart. Rows a power of two apart would share few places of the
+  /// cache.
+  [[nodiscard]] std::size_t row_size() const {
+    return registers_ / line * line + (registers_ / line % 2 == 0 ? line : 2 * line);
+  }
+  /// All coefficients, row by row.
+  [[nodiscard]] std::span<Real> rows() { return rows_; }
   /// The coefficient of s^k.
   [[nodiscard]] Real& coefficient(std::size_t k, Register place) { return rows_[k * row_size_ + place]; }
   [[nodiscard]] const Real& coefficient(std::size_t k, Register place) const { return rows_[k * row_size_ + place]; }
@@ -160,12 +182,6 @@ class SeriesProgram {
  private:
   static constexpr std::uint32_t line = 8;  // numbers of a cache line
 
-  struct Operation {
-    SeriesCode code;
-    Register result;
-    std::uint32_t count;
-    Register a, b, c;
-  };
   struct Number {
     Register place;
     Real value;
@@ -186,41 +202,42 @@ class SeriesProgram {
     for (std::uint32_t i = 0; i < o.count; ++i) r[i] = each(i);
   }
 
-  /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j, i) a_j b_(k - j) for j from `first` to `last`.
-  /// A number of members at once; where they are no multiple of it, some again, with the same results.
+  /// finish(i, sum) becomes coefficient k of member i, sum = sum of w(j) a_j b_(k - j) for j from `first` to `last`.
   template <class Weight, class Finish>
   [[gnu::always_inline]] void set_by_sum(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
                                          std::size_t last, Weight&& weight, Finish&& finish) {
-    if (o.count >= 8) return set_pieces<8>(o, k, a, b, first, last, weight, finish);
-    if (o.count >= 4) return set_pieces<4>(o, k, a, b, first, last, weight, finish);
-    set_pieces<1>(o, k, a, b, first, last, weight, finish);
-  }
-  template <std::uint32_t piece, class Weight, class Finish>
-  [[gnu::always_inline]] void set_pieces(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
-                                         std::size_t last, Weight&& weight, Finish&& finish) {
+    const Operand<Weight> terms{row(0) + a, row(k) + b, first, last, weight};
     std::uint32_t begin = 0;
-    for (; begin + piece <= o.count; begin += piece) set_piece<piece>(o, k, a, b, first, last, begin, weight, finish);
-    if (begin < o.count) set_piece<piece>(o, k, a, b, first, last, o.count - piece, weight, finish);
+    for (; begin + 8 <= o.count; begin += 8) set_piece<8>(o, k, terms, begin, finish);
+    if (begin + 4 <= o.count) set_piece<4>(o, k, terms, begin, finish), begin += 4;
+    if (begin + 2 <= o.count) set_piece<2>(o, k, terms, begin, finish), begin += 2;
+    if (begin < o.count) set_piece<1>(o, k, terms, begin, finish);
   }
-  /// Even and odd terms apart: one addition does not wait for the other.
-  template <std::uint32_t piece, class Weight, class Finish>
-  [[gnu::always_inline]] void set_piece(const Operation& o, std::size_t k, Register a, Register b, std::size_t first,
-                                        std::size_t last, std::uint32_t begin, Weight&& weight, Finish&& finish) {
+  template <class Weight>
+  struct Operand {
+    const Real *a, *b;  // a of order 0, b of order k
+    std::size_t first, last;
+    const Weight& weight;
+  };
+  /// Some members at once. Even and odd terms apart: one addition does not wait for the other. The first and the last
+  /// term come last: they have the coefficients of order k, which were computed just now.
+  template <std::uint32_t piece, class Terms, class Finish>
+  [[gnu::always_inline]] void set_piece(const Operation& o, std::size_t k, const Terms& terms, std::uint32_t begin,
+                                        Finish&& finish) {
     Real even[piece] = {}, odd[piece] = {};
-    const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(row_size_);
-    const Real* u = row(first) + a + begin;
-    const Real* v = row(k - first) + b + begin;
-    std::size_t j = first;
-    for (; j < last; j += 2, u += 2 * step, v -= 2 * step) {
-      const Real *const next_u = u + step, *const next_v = v - step;
-      for (std::uint32_t i = 0; i < piece; ++i) even[i] += weight(j, begin + i) * (u[i] * v[i]);
-      for (std::uint32_t i = 0; i < piece; ++i) odd[i] += weight(j + 1, begin + i) * (next_u[i] * next_v[i]);
-    }
-    if (j == last) {
-      for (std::uint32_t i = 0; i < piece; ++i) even[i] += weight(j, begin + i) * (u[i] * v[i]);
-    }
+    const auto add = [&](Real* sum, std::size_t j) __attribute__((always_inline)) {
+      const Real weight = terms.weight(j);
+      const Real *const u = terms.a + begin + j * row_size_, *const v = terms.b + begin - j * row_size_;
+      for (std::uint32_t i = 0; i < piece; ++i) sum[i] += weight * (u[i] * v[i]);
+    };
+    std::size_t j = terms.first + 1;
+    for (; j + 1 < terms.last; j += 2) add(even, j), add(odd, j + 1);
+    if (j < terms.last) add(even, j);
+    for (std::uint32_t i = 0; i < piece; ++i) even[i] += odd[i];
+    if (terms.first <= terms.last) add(even, terms.first);
+    if (terms.first < terms.last) add(even, terms.last);
     Real* const r = row(k) + o.result + begin;
-    for (std::uint32_t i = 0; i < piece; ++i) r[i] = finish(begin + i, Real(even[i] + odd[i]));
+    for (std::uint32_t i = 0; i < piece; ++i) r[i] = finish(begin + i, even[i]);
   }
 
   template <bool weighted>
@@ -260,6 +277,7 @@ class SeriesProgram {
   std::vector<Real> rows_;  // coefficients of order 0, then of order 1, ...
   std::uint32_t registers_ = 0;
   std::size_t row_size_ = 0;
+  std::size_t begun_ = 0;  // size of the rows in which the coefficients of numbers are there
   bool has_corners_ = false;
 };
 
@@ -273,9 +291,15 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
                         auto&& finish) __attribute__((always_inline)) {
     return set_by_sum(of, k, u, v, first, last, weight, finish), true;
   };
-  const auto plain = [](std::size_t, std::uint32_t) { return Real(1); };
-  const auto weighted = [](std::size_t j, std::uint32_t) { return Real(static_cast<double>(j)); };
+  const auto plain = [](std::size_t) { return Real(1); };
+  const auto weighted = [](std::size_t j) { return Real(static_cast<double>(j)); };
   const auto just = [](std::uint32_t, const Real& sum) { return sum; };
+  // Of a square: twice the half of the terms, and the middle one.
+  const auto both_halves = [&](Register of) {
+    return [m = row(k / 2) + of, even = k % 2 == 0](std::uint32_t i, const Real& sum) {
+      return even ? 2 * sum + m[i] * m[i] : 2 * sum;
+    };
+  };
   const auto by_order = [&](std::uint32_t, const Real& sum) { return sum / order; };
   // r' = slope a' / u: what is left of a_k when the products of known coefficients are taken away.
   const auto by_slope = [&](Register slope, const Real& sign) __attribute__((always_inline)) {
@@ -302,11 +326,7 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return sums(plain, o, o.a, o.b, 0, k, just);
     case SeriesCode::square: {
       if (k == 0) return all([&](std::uint32_t i) { return a[i] * a[i]; });
-      // Twice the half of the terms, and the middle one.
-      const Real part = Real(k % 2 == 0 ? 1 : 0);
-      return sums(plain, o, o.a, o.a, 0, (k - 1) / 2, [&, m = row(k / 2) + o.a](std::uint32_t i, const Real& sum) {
-        return 2 * sum + part * (m[i] * m[i]);
-      });
+      return sums(plain, o, o.a, o.a, 0, (k - 1) / 2, both_halves(o.a));
     }
     case SeriesCode::quotient: {
       const Real* const divisor = row(0) + o.b;
@@ -318,12 +338,11 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       if (k == 0 || o.code >= SeriesCode::arc_tangent2) return false;
   }
   switch (o.code) {
-    case SeriesCode::square_root: {  // r r = a; that of 0 is 0 as long as a is
-      const Real part = Real(k % 2 == 0 ? 1 : 0);
+    case SeriesCode::square_root: {  // r r = a
       return sums(plain, o, o.result, o.result, 1, (k - 1) / 2,
-                  [&, m = row(k / 2) + o.result](std::uint32_t i, const Real& sum) {
-                    const Real rest = a[i] - (2 * sum + part * (m[i] * m[i]));
-                    return r[i] == Real(0) && rest == Real(0) ? Real(0) : rest / (2 * r[i]);
+                  [&, square = both_halves(o.result)](std::uint32_t i, const Real& sum) {
+                    const Real rest = a[i] - square(i, sum);
+                    return r[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, Real(0.5)) : rest / (2 * r[i]);
                   });
     }
     case SeriesCode::exponential:
@@ -336,12 +355,11 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
     case SeriesCode::arc_cosine:
       return by_slope(o.b, Real(-1));
     case SeriesCode::power: {  // a r' = p r a': the sum of (p j - (k - j)) a_j r_(k - j)
-      const Real *const p = row(0) + o.b, *const base = row(0) + o.a;
-      const auto weight = [&](std::size_t j, std::uint32_t i) {
-        return (p[i] + Real(1)) * Real(static_cast<double>(j)) - order;
-      };
+      const Real* const base = row(0) + o.a;
+      const Real p = row(0)[o.b];
+      const auto weight = [&](std::size_t j) { return (p + Real(1)) * Real(static_cast<double>(j)) - order; };
       return sums(weight, o, o.a, o.result, 1, k, [&](std::uint32_t i, const Real& sum) {
-        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p[i]) : sum / (order * base[i]);
+        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p) : sum / (order * base[i]);
       });
     }
     case SeriesCode::sine_cosine:
@@ -398,7 +416,7 @@ void SeriesProgram<Real>::begin_functions(const Operation& o) {
         r[i] = log(a[i]);
         break;
       case SeriesCode::power:
-        r[i] = pow(a[i], b[i]);
+        r[i] = pow(a[i], b[0]);
         break;
       case SeriesCode::sine_cosine:
         r[i] = sin(a[i]), second[i] = cos(a[i]);
@@ -427,7 +445,8 @@ void SeriesProgram<Real>::begin_functions(const Operation& o) {
   }
 }
 
-/// a^p where a begins with a power s^m: then the result begins with s^(p m), and the recurrence is that of a / s^m.
+/// a^p, also a root, where a begins with a power s^m: then the result begins with s^(p m), and the recurrence is that
+/// of a / s^m. Not a number where p m is not whole.
 template <class Real>
 Real SeriesProgram<Real>::power_at_zero(std::size_t k, Register a, Register result, const Real& p) {
   using std::pow;
