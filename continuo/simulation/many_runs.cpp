@@ -45,7 +45,7 @@ std::size_t steps_together(const Plan& plan, std::size_t limit) {
 /// The runs [first, last) go together.
 class Together final : public RunWatcher<X> {
  public:
-  Together(const std::shared_ptr<const ModelProgram>& program, const std::shared_ptr<LaneCode>& code,
+  Together(const std::shared_ptr<const ModelProgram>& program, const std::shared_ptr<NativeFunction>& code,
            std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
            std::span<Planned> planned, const OnJudged& done)
       : program_(program), code_(code), experiments_(experiments), watchers_(watchers), planned_(planned), done_(done) {
@@ -151,7 +151,7 @@ class Together final : public RunWatcher<X> {
   }
 
   const std::shared_ptr<const ModelProgram>& program_;
-  const std::shared_ptr<LaneCode>& code_;
+  const std::shared_ptr<NativeFunction>& code_;
   std::optional<LaneEquations> equations_;
   std::span<const Experiment> experiments_;
   std::span<MotionWatcher* const> watchers_;

@@ -17,7 +17,7 @@
 
 namespace continuo::model {
 
-class LaneCode;  // symbolic/native/lane_code.hpp
+class NativeFunction;  // symbolic/native/native_function.hpp
 
 /// A run without its rows, or why there is none: as in Simulated.
 struct JudgedRun {
@@ -48,7 +48,7 @@ class ManyRuns {
  private:
   std::shared_ptr<const ModelProgram> program_;
   bool can_go_together_;
-  std::shared_ptr<LaneCode> code_{};  // null where nobody compiles any
+  std::shared_ptr<NativeFunction> code_{};  // null where nobody compiles any
 };
 
 }  // namespace continuo::model

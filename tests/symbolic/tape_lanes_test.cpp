@@ -70,8 +70,8 @@ TEST(TapeLanes, OfFamiliesHaveTheBitsOfEachRunAlone) {
 void expect_machine_code(Graph& g, const std::vector<NodeId>& expressions, std::mt19937& random,
                          NativeCompiler& native) {
   const auto tape = std::make_shared<const Tape>(g, expressions, layout, tables());
-  const std::shared_ptr<LaneCode> code = native.lane_code(tape);
-  ASSERT_NE(code->function(), nullptr) << native.report().trouble;
+  const std::shared_ptr<NativeFunction> code = native.lane_code(tape);
+  ASSERT_NE(code->code(), nullptr) << native.report().trouble;
   for (int i = 0; i < 10; ++i) {
     std::vector<TapeLanes> registers(tape->register_count()), states_of(states), outputs(tape->output_count());
     std::vector<std::vector<double>> values;
@@ -81,8 +81,8 @@ void expect_machine_code(Graph& g, const std::vector<NodeId>& expressions, std::
         (k >= 1 && k <= states ? states_of[k - 1] : registers[k]).set(lane, values.back()[k]);
     }
     tape->prepare<TapeLanes>(registers);
-    code->function()(registers.front().numbers.data(), states_of.front().numbers.data(),
-                     outputs.front().numbers.data());
+    reinterpret_cast<NativeEvaluation>(code->code())(registers.front().numbers.data(), states_of.front().numbers.data(),
+                                                     outputs.front().numbers.data());
     for (std::size_t lane = 0; lane < TapeLanes::width; ++lane) {
       const std::vector<double> alone = evaluated(*tape, values[lane]);
       for (std::size_t k = 0; k < alone.size(); ++k)

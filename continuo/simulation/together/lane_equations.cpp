@@ -17,7 +17,7 @@ constexpr std::uint64_t between_counts = 20'000;
 
 }  // namespace
 
-LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<LaneCode> code)
+LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code)
     : autonomous(program.autonomous),
       tape_(program.derivatives.front()),
       code_(std::move(code)),
@@ -73,9 +73,9 @@ void LaneEquations::evaluate(Registers<Register>& registers, const Wide& t, cons
     tape_->prepare<Register>(all);
   }
   std::memcpy(static_cast<void*>(&all[Layout::time]), &t, sizeof t);
-  if (const NativeEvaluation native = code_ ? code_->function() : nullptr) {
-    native(all.front().numbers.data(), reinterpret_cast<const double*>(x.data()),
-           reinterpret_cast<double*>(dxdt.data()));
+  if (void* const native = code_ ? code_->code() : nullptr) {
+    reinterpret_cast<NativeEvaluation>(native)(all.front().numbers.data(), reinterpret_cast<const double*>(x.data()),
+                                               reinterpret_cast<double*>(dxdt.data()));
   } else {
     evaluate_tape(registers, x, dxdt);
   }
@@ -95,7 +95,7 @@ void LaneEquations::evaluate_tape(Registers<Register>& registers, const std::vec
 void LaneEquations::count_use() {
   uncounted_ += operations_;
   if (uncounted_ < between_counts) return;
-  code_->count_use(std::exchange(uncounted_, 0));
+  code_->count(std::exchange(uncounted_, 0));
 }
 
 }  // namespace continuo::model

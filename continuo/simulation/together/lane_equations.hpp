@@ -12,7 +12,7 @@
 
 #include <continuo/numerics/lanes.hpp>
 #include <continuo/simulation/program/model_program.hpp>
-#include <continuo/symbolic/native/lane_code.hpp>
+#include <continuo/symbolic/native/native_function.hpp>
 #include <continuo/symbolic/tape/tape_lanes.hpp>
 
 namespace continuo::model {
@@ -22,7 +22,7 @@ class LaneEquations {
   using Wide = Lanes<double, TapeLanes::width>;
 
   /// Of a model with one mode, whose equations do not jump. `code`: their machine code, or null.
-  LaneEquations(const ModelProgram& program, std::shared_ptr<LaneCode> code);
+  LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code);
 
   /// The parameters of a run with these variables. `number` is not that of any other run, and at least 1.
   [[nodiscard]] static std::vector<double> parameters(std::size_t number, std::span<const double> variables);
@@ -50,7 +50,7 @@ class LaneEquations {
   void count_use();
 
   std::shared_ptr<const Tape> tape_;
-  std::shared_ptr<LaneCode> code_;
+  std::shared_ptr<NativeFunction> code_;
   std::uint64_t operations_;     // of an evaluation
   std::uint64_t uncounted_ = 0;  // operations
   std::size_t states_begin_, states_end_;

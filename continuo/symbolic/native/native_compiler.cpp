@@ -1,4 +1,5 @@
-// Decides when a tape is worth compiling, has it compiled beside the run, and puts the machine code in its place.
+// Decides when a tape or a function is worth compiling, has it compiled beside the run, and puts the machine code in
+// its place.
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
@@ -19,6 +20,7 @@ namespace {
 // An operation of a tape takes about a nanosecond. The cache is asked in a fifth of a millisecond, and the compiler
 // takes 30 milliseconds and more.
 constexpr std::uint64_t operations_before_cache = 1'000'000, operations_before_compiler = 30'000'000;
+constexpr std::size_t most_functions = 256;  // that are remembered
 
 constexpr std::string_view heading =
     "double sin(double), cos(double), tan(double), asin(double), acos(double), atan(double), atan2(double, double);\n"
@@ -47,6 +49,15 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+/// What Tape::evaluate does, as a function of C, for one run or for several at once.
+std::string function_of(const Tape& tape, bool in_lanes) {
+  const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
+  const std::string_view type = in_lanes ? "lanes" : "double";
+  const std::string signature =
+      fmt::format("void evaluate({0} *restrict r, const {0} *restrict x, {0} *restrict y)", type);
+  return c_function(tape, {.signature = signature, .arrays = states, .in_lanes = in_lanes});
+}
+
 }  // namespace
 
 NativeCompiler::NativeCompiler(NativeOptions options) : options_(std::move(options)) {}
@@ -68,36 +79,58 @@ void NativeCompiler::note_trouble(const std::string& what) {
 
 void NativeCompiler::watch(const std::shared_ptr<const Tape>& tape) {
   if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return;
-  if (options_.use == NativeUse::always) return make_now({tape}, {});
+  if (options_.use == NativeUse::always) return make_now(job_of(tape), {});
   tape->notify_of_use(operations_before_cache,
                       [compiler = weak_from_this(), of = std::weak_ptr(tape)](std::uint64_t operations) {
                         const auto self = compiler.lock();
                         const auto used = of.lock();
-                        return self && used ? self->after(operations, {used}) : 0;
+                        return self && used ? self->after(operations, job_of(used)) : 0;
                       });
 }
 
-std::shared_ptr<LaneCode> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape) {
-  auto lanes = std::make_shared<LaneCode>();
-  if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return lanes;
-  if (options_.use == NativeUse::always) {
-    make_now({tape, lanes}, {});
-    return lanes;
+std::shared_ptr<NativeFunction> NativeCompiler::function(const std::string& key, std::function<std::string()> text) {
+  if (options_.use == NativeUse::never) return std::make_shared<NativeFunction>();
+  std::shared_ptr<NativeFunction> made;
+  {
+    const std::lock_guard lock(mutex_);
+    if (functions_.size() >= most_functions) functions_.clear();  // who uses one keeps it
+    std::shared_ptr<NativeFunction>& place = functions_[key];
+    if (place) return place;
+    made = place = std::make_shared<NativeFunction>();
   }
-  lanes->notify_ = [compiler = weak_from_this(), tape, of = std::weak_ptr(lanes)](std::uint64_t operations) {
-    const auto self = compiler.lock();
-    const auto used = of.lock();
-    return self && used ? self->after(operations, {tape, used}) : 0;
-  };
-  lanes->wanted_ = operations_before_cache;
+  provide(made, std::move(text));
+  return made;
+}
+
+std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape) {
+  const auto lanes = std::make_shared<NativeFunction>();
+  if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return lanes;
+  provide(lanes, [tape] {
+    std::string function = function_of(*tape, true);
+    function = c_lane_helpers(function) + function;
+    return std::string(heading) + c_helpers(function, tape->tables()) + function;
+  });
   return lanes;
 }
 
-std::uint64_t NativeCompiler::after(std::uint64_t operations, const Wanted& wanted) {
-  if (operations < operations_before_compiler)
-    return load_from_cache(wanted, text_of(wanted)) ? 0 : operations_before_compiler;
+void NativeCompiler::provide(const std::shared_ptr<NativeFunction>& function, std::function<std::string()> text) {
+  const auto job = [text = std::move(text)](const std::shared_ptr<NativeFunction>& user) {
+    return Job{text, [user](void* made, std::shared_ptr<const void> code) { user->use(made, std::move(code)); }};
+  };
+  if (options_.use == NativeUse::always) return make_now(job(function), {});
+  function->notify_of_use(
+      operations_before_cache,
+      [compiler = weak_from_this(), of = std::weak_ptr(function), job](std::uint64_t operations) -> std::uint64_t {
+        const auto self = compiler.lock();
+        const auto user = of.lock();
+        return self && user ? self->after(operations, job(user)) : 0;
+      });
+}
+
+std::uint64_t NativeCompiler::after(std::uint64_t operations, Job job) {
+  if (operations < operations_before_compiler) return load_from_cache(job, job.text()) ? 0 : operations_before_compiler;
   const std::lock_guard lock(mutex_);
-  waiting_.push_back(wanted);
+  waiting_.push_back(std::move(job));
   if (!worker_.joinable()) worker_ = std::jthread([this](std::stop_token stop) { work(std::move(stop)); });
   wake_.notify_all();
   return 0;
@@ -105,35 +138,35 @@ std::uint64_t NativeCompiler::after(std::uint64_t operations, const Wanted& want
 
 void NativeCompiler::work(std::stop_token stop) {
   for (;;) {
-    Wanted wanted;
+    Job job;
     {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [&] { return !waiting_.empty(); }) || stop.stop_requested()) return;
-      wanted = std::move(waiting_.front());
+      job = std::move(waiting_.front());
       waiting_.pop_front();
     }
-    make_now(wanted, stop);
+    make_now(job, stop);
   }
 }
 
-void NativeCompiler::make_now(const Wanted& wanted, std::stop_token stop) {
-  const std::string text = text_of(wanted);
-  if (!load_from_cache(wanted, text)) compile(wanted, text, std::move(stop));
+void NativeCompiler::make_now(const Job& job, std::stop_token stop) {
+  const std::string text = job.text();
+  if (!load_from_cache(job, text)) compile(job, text, std::move(stop));
 }
 
-std::string NativeCompiler::text_of(const Wanted& wanted) const {
-  const Tape& tape = *wanted.tape;
-  const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
-  const std::string_view type = wanted.lanes ? "lanes" : "double";
-  const std::string signature =
-      fmt::format("void evaluate({0} *restrict r, const {0} *restrict x, {0} *restrict y)", type);
-  std::string function =
-      c_function(tape, {.signature = signature, .arrays = states, .in_lanes = wanted.lanes != nullptr});
-  if (wanted.lanes) function = c_lane_helpers(function) + function;
-  return std::string(heading) + c_helpers(function, tape.tables()) + function;
+NativeCompiler::Job NativeCompiler::job_of(const std::shared_ptr<const Tape>& tape) {
+  return {.text =
+              [tape] {
+                const std::string function = function_of(*tape, false);
+                return std::string(heading) + c_helpers(function, tape->tables()) + function;
+              },
+          .use =
+              [tape](void* function, std::shared_ptr<const void> code) {
+                tape->use_native(reinterpret_cast<NativeEvaluation>(function), std::move(code));
+              }};
 }
 
-bool NativeCompiler::load_from_cache(const Wanted& wanted, const std::string& text) {
+bool NativeCompiler::load_from_cache(const Job& job, const std::string& text) {
   std::call_once(found_, [&] {
     compiler_ = find_c_compiler();
     cache_.emplace(options_.cache);
@@ -141,13 +174,13 @@ bool NativeCompiler::load_from_cache(const Wanted& wanted, const std::string& te
   });
   const auto file = cache_->find(compiler_->identity + "\n" + text);
   if (!file) return false;
-  load(wanted, *file);
+  load(job, *file);
   const std::lock_guard lock(mutex_);
   ++report_.loaded;
   return true;
 }
 
-void NativeCompiler::compile(const Wanted& wanted, const std::string& text, std::stop_token stop) {
+void NativeCompiler::compile(const Job& job, const std::string& text, std::stop_token stop) {
   const TemporaryFolder folder;
   if (folder.path().empty()) return note_trouble("no folder for temporary files can be made");
   if (const Status status = check_private(folder.path()); !status) return note_trouble(status.message);
@@ -160,18 +193,18 @@ void NativeCompiler::compile(const Wanted& wanted, const std::string& text, std:
   if (const Status status = compiler_->compile(source, made, std::move(stop)); !status)
     return note_trouble(status.message);
   cache_->keep(compiler_->identity + "\n" + text, made);
-  load(wanted, made);
+  load(job, made);
   const std::lock_guard lock(mutex_);
   ++report_.compiled;
 }
 
-void NativeCompiler::load(const Wanted& wanted, const fs::path& shared_object) {
+void NativeCompiler::load(const Job& job, const fs::path& shared_object) {
   void* const opened = dlopen(shared_object.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (opened == nullptr) return note_trouble(fmt::format("{}: {}", shared_object.string(), dlerror()));
   std::shared_ptr<void> code(opened, [](void* handle) { dlclose(handle); });
-  const auto function = reinterpret_cast<NativeEvaluation>(dlsym(opened, "evaluate"));
+  void* const function = dlsym(opened, "evaluate");
   if (function == nullptr) return note_trouble(fmt::format("{}: no function in it", shared_object.string()));
-  wanted.lanes ? wanted.lanes->use(function, std::move(code)) : wanted.tape->use_native(function, std::move(code));
+  job.use(function, std::move(code));
 }
 
 }  // namespace continuo::model

@@ -15,6 +15,8 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,8 +25,8 @@
 
 #include <continuo/status/result.hpp>
 #include <continuo/symbolic/native/c_compiler.hpp>
-#include <continuo/symbolic/native/lane_code.hpp>
 #include <continuo/symbolic/native/native_cache.hpp>
+#include <continuo/symbolic/native/native_function.hpp>
 #include <continuo/symbolic/tape/tape.hpp>
 
 namespace continuo::model {
@@ -51,30 +53,36 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   /// With `always` the tape is machine code when this returns, or `report` says why not.
   void watch(const std::shared_ptr<const Tape>& tape);
 
-  /// The machine code of the tape for several runs at once, to be counted on and asked for: with `always` it is there
-  /// when this returns.
-  [[nodiscard]] std::shared_ptr<LaneCode> lane_code(const std::shared_ptr<const Tape>& tape);
+  /// The function `evaluate` of a C text, which is asked for when it is needed. Equal keys stand for equal texts, whose
+  /// users share the function and count together. With `always` it is there when this returns, or `report` says why
+  /// not.
+  [[nodiscard]] std::shared_ptr<NativeFunction> function(const std::string& key, std::function<std::string()> text);
+  /// What Tape::evaluate does, for several runs at once in the lanes of TapeLanes: a NativeEvaluation, whose states and
+  /// outputs need not be aligned. As `function`, and of this caller alone.
+  [[nodiscard]] std::shared_ptr<NativeFunction> lane_code(const std::shared_ptr<const Tape>& tape);
 
   struct Report {
-    std::size_t compiled = 0;  // tapes, by the compiler
-    std::size_t loaded = 0;    // tapes, from the cache
-    std::string trouble;       // of the first tape that could not be compiled
+    std::size_t compiled = 0;  // tapes and series, by the compiler
+    std::size_t loaded = 0;    // from the cache
+    std::string trouble;       // of the first that could not be compiled
   };
   [[nodiscard]] Report report() const;
 
  private:
-  /// A tape whose machine code is wanted, and for several runs at once who gets it; else the tape does.
-  struct Wanted {
-    std::shared_ptr<const Tape> tape;
-    std::shared_ptr<LaneCode> lanes{};
+  /// A function to be compiled, and who takes it.
+  struct Job {
+    std::function<std::string()> text;
+    std::function<void(void* function, std::shared_ptr<const void> code)> use;
   };
-  /// What has been done so far decides what is tried next.
-  [[nodiscard]] std::uint64_t after(std::uint64_t operations, const Wanted& wanted);
-  void make_now(const Wanted& wanted, std::stop_token stop);
-  [[nodiscard]] std::string text_of(const Wanted& wanted) const;
-  [[nodiscard]] bool load_from_cache(const Wanted& wanted, const std::string& text);
-  void compile(const Wanted& wanted, const std::string& text, std::stop_token stop);
-  void load(const Wanted& wanted, const std::filesystem::path& shared_object);
+  [[nodiscard]] static Job job_of(const std::shared_ptr<const Tape>& tape);
+  /// Has the text compiled for the function, now or when that pays.
+  void provide(const std::shared_ptr<NativeFunction>& function, std::function<std::string()> text);
+  /// What was done so far decides what is tried next.
+  [[nodiscard]] std::uint64_t after(std::uint64_t operations, Job job);
+  void make_now(const Job& job, std::stop_token stop);
+  [[nodiscard]] bool load_from_cache(const Job& job, const std::string& text);
+  void compile(const Job& job, const std::string& text, std::stop_token stop);
+  void load(const Job& job, const std::filesystem::path& shared_object);
   void note_trouble(const std::string& what);
   void work(std::stop_token stop);
 
@@ -84,7 +92,8 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   std::once_flag found_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::deque<Wanted> waiting_;
+  std::deque<Job> waiting_;
+  std::map<std::string, std::shared_ptr<NativeFunction>> functions_;  // by key
   Report report_;
   std::jthread worker_;  // the last member: it ends before what it uses
 };
