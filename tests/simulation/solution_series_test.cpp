@@ -2,8 +2,12 @@
 // runs by the method `taylor` against closed forms.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <span>
@@ -13,10 +17,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tests/language/check_helpers.hpp>
+#include <tests/symbolic/native_referee.hpp>
 
 #include <continuo/simulation/program/model_system.hpp>
 #include <continuo/simulation/program/solution_series.hpp>
 #include <continuo/simulation/simulate.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
 #include <continuo/symbolic/tape/tape_run.hpp>
 
 namespace continuo::model::solution_series_test {
@@ -191,6 +197,106 @@ TEST(SolutionSeries, FollowsSwitches) {
   }
 }
 
+// ---- machine code -------------------------------------------------------------------------------------------------
+
+/// The coefficients by machine code against those by the program, to the bit, at the start and elsewhere. Whether there
+/// was machine code.
+void expect_same_bits(const Model& model, const std::shared_ptr<NativeCompiler>& native, std::size_t highest,
+                      std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Model with_native = model;
+  with_native.native = native;
+  const auto interpreted = compile(model), compiled = compile(std::move(with_native));
+  const std::vector<double> start = start_values(interpreted->model);
+  SolutionSeries expected(*interpreted, interpreted->model.modes[0].derivatives, start);
+  SolutionSeries found(*compiled, compiled->model.modes[0].derivatives, start);
+  std::vector<double> x(interpreted->model.states.size());
+  std::copy_n(start.begin() + interpreted->model.layout.states, x.size(), x.begin());
+  const std::size_t functions = native->report().compiled;
+  for (int place = 0; place < 3; ++place) {
+    std::vector<std::vector<double>> a(highest + 1, x), b(highest + 1, x);
+    expected.expand(0.3 * place, 0.1, a);
+    found.expand(0.3 * place, 0.1, b);
+    for (std::size_t k = 0; k <= highest; ++k) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::isnan(a[k][i]) && std::isnan(b[k][i])) continue;
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(b[k][i]), std::bit_cast<std::uint64_t>(a[k][i]))
+            << b[k][i] << ", not " << a[k][i] << ", of " << model.states[i].column << ", order " << k << " of "
+            << highest;
+      }
+    }
+    for (double& value : x) value += 0.1 * normal(random) * (1 + std::abs(value));
+  }
+  EXPECT_EQ(native->report().compiled, functions + 1) << native->report().trouble;
+}
+
+TEST(NativeSeries, OfRandomModelsHasTheBitsOfTheProgram) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(8);
+  for (const std::size_t highest : {1, 4, 17}) {
+    RandomFormula formula(random);
+    std::string text = "param a = 1.25, n = 3\nrun 0..1\n";
+    std::vector<std::string> names{"x", "y", "z"};
+    for (int i = 0; i < 5; ++i) names.push_back(fmt::format("w{}", i));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      text += fmt::format("{}' = {}\n{}(0) = {}\n", names[i], formula(1 + static_cast<int>(i) % 3), names[i],
+                          0.3 + 0.1 * static_cast<double>(i % 4));
+    }
+    SCOPED_TRACE(text);
+    ASSERT_NO_FATAL_FAILURE(expect_same_bits(good(text), native, highest, random));
+  }
+}
+
+TEST(NativeSeries, OfFamiliesHasTheBitsOfTheProgram) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(9);
+  std::size_t highest = 2;
+  for (const char* rate : {"u[i]*v[i] - sin(u[i])*tanh(v[i])", "(u[i-1] - 2*u[i] + u[i+1])*exp(-v[i])",
+                           "u[i]^1.5/(1 + v[i+1]^2)", "i/4*cos(u[i])*sin(u[i]) + sqrt(v[i])",
+                           "max(u[i], v[i])*u[N+1-i] + atan2(u[i], v[i])", "hypot(u[i], v[N+1-i])"}) {
+    const std::string text = fmt::format(
+        "param N = {}\nfor i in 1..N {{ u[i](0) = 0.5 + i/N; v[i](0) = 1; v[i]' = u[i]*v[i] }}\n"
+        "for i in 2..N-1 {{ u[i]' = {} }}\nu[1]' = 1 + u[2]; u[N]' = u[1]*u[N]\nrun 0..1\n",
+        17 + highest, rate);
+    ASSERT_NO_FATAL_FAILURE(expect_same_bits(good(text), native, highest, random)) << text;
+    highest += 3;
+  }
+}
+
+TEST(NativeSeries, OfTheGalleryHasTheBitsOfTheProgram) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(10);
+  for (const char* name : {"kepler", "outer_planets", "brusselator_line"}) {
+    const Loaded loaded = load((std::filesystem::path(CONTINUO_SOURCE_DIR) / "models" / name).string() + ".sim");
+    ASSERT_TRUE(loaded) << name;
+    ASSERT_NO_FATAL_FAILURE(expect_same_bits(*loaded.model, native, 9, random)) << name;
+  }
+}
+
+// A run begins with the program and goes on with machine code. Equal models share it.
+TEST(NativeSeries, TakesOverDuringARunAndIsShared) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::automatic, folder.path / "cache"});
+  Model model = good("x' = y\ny' = -sin(x)\nx(0) = 1; y(0) = 0\nrun 0..1\n");
+  model.native = native;
+  const auto program = compile(std::move(model));
+  const std::vector<double> start = start_values(program->model);
+  SolutionSeries one(*program, program->model.modes[0].derivatives, start);
+  std::vector<std::vector<double>> first(18, {1, 0}), now = first;
+  one.expand(0, 1, first);
+  for (int i = 0; i < 2'000'000 && native->report().compiled == 0; ++i) one.expand(0, 1, now);
+  ASSERT_EQ(native->report().compiled, 1U) << native->report().trouble;
+  one.expand(0, 1, now);
+  EXPECT_EQ(now, first);
+  SolutionSeries other(*program, program->model.modes[0].derivatives, start);
+  other.expand(0, 1, now);
+  EXPECT_EQ(now, first);
+  EXPECT_EQ(native->report().loaded, 0U);
+}
+
 // ---- runs ---------------------------------------------------------------------------------------------------------
 
 Run run_of(const std::string& text, double tolerance, const std::string& method = "taylor") {
@@ -268,6 +374,46 @@ TEST(TaylorOfModels, FindsCornersThatAreNoSwitches) {
 TEST(TaylorOfModels, RefusesAlgebraicEquations) {
   const Loaded loaded = load_text("x' = -z\nunknown z = 1\n0 = z - x\nx(0) = 1\nrun 0..1 method taylor\n");
   EXPECT_FALSE(loaded && simulate(*loaded.model).run);
+}
+
+// At a tolerance, the error after a thousand years is about that of other methods.
+TEST(TaylorOfModels, IsAsExactAsOtherMethodsOverALongRun) {
+  const Loaded loaded = load((std::filesystem::path(CONTINUO_SOURCE_DIR) / "models/outer_planets.sim").string());
+  ASSERT_TRUE(loaded);
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const auto error = [&](const char* method) {
+      const Simulated simulated =
+          simulate(*loaded.model, {.method = method, .rtol = tolerance, .atol = {tolerance}, .keep_rows = false});
+      const auto x = simulated.run->final_state();
+      return std::hypot(x[6] - 6.88878506245507991, x[8] + 2.54066260570324595, x[10] + 1.26415971758173095);
+    };
+    EXPECT_LT(error("taylor"), 5 * error("dop853")) << tolerance;
+  }
+}
+
+// What begins as a power with a fraction has no series there. A whole power of it has.
+TEST(TaylorOfModels, SaysWhereThereIsNoSeries) {
+  for (const char* rate : {"1 + t^1.5", "1 + sqrt(t)", "2 - (x - 1)^0.75", "1 + abs(t*sqrt(t))"}) {
+    const auto run = run_of(fmt::format("x' = {}\nx(0) = 1\nrun 0..1\n", rate), 1e-9);
+    EXPECT_EQ(run.outcome.ending, Ending::nonlinear_solve_failed) << rate;
+    EXPECT_NE(run.outcome.hint.find("no Taylor series"), std::string::npos) << rate << run.outcome.hint;
+  }
+  for (const char* rate : {"t^3", "(t^2)^1.5", "sqrt(t^2)", "(t^4)^0.75"}) {
+    const auto run = run_of(fmt::format("x' = 4*{}\nx(0) = 0\nrun 0..1\n", rate), 1e-9);
+    ASSERT_TRUE(run.outcome) << rate << describe(run.outcome);
+    EXPECT_NEAR(run.final_state()[0], rate == std::string("sqrt(t^2)") ? 2 : 1, 1e-9) << rate;
+  }
+}
+
+TEST(TaylorOfModels, TakesWhatIsAPolynomialAndWhatStandsStill) {
+  const auto run = run_of("x' = 0\ny' = 3*t^2\nz' = 1\nx(0) = 2; y(0) = 0; z(0) = 0\nrun 0..10\n", 1e-12);
+  ASSERT_TRUE(run.outcome) << describe(run.outcome);
+  EXPECT_EQ(run.final_state()[0], 2);
+  EXPECT_NEAR(run.final_state()[1], 1000, 1e-9);
+  EXPECT_NEAR(run.final_state()[2], 10, 1e-12);
+  const auto still = run_of("x' = 0\nx(0) = 2\nrun 0..1e6\n", 1e-12);
+  ASSERT_TRUE(still.outcome) << describe(still.outcome);
+  EXPECT_EQ(still.final_state()[0], 2);
 }
 
 // A fixed step has order 8.

@@ -10,7 +10,9 @@
 #include <utility>
 
 #include <continuo/methods/taylor_series/series_program.hpp>
+#include <continuo/simulation/program/series_source.hpp>
 #include <continuo/simulation/program/solution_series.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
 
 namespace continuo::model {
 
@@ -32,8 +34,11 @@ struct SolutionSeries::Program {
   };
   [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes) const;
   void renew();
+  [[nodiscard]] NativeFunction* function_of(std::size_t order, std::span<const Register> rates);
+  void expand(double t, double scale, std::span<std::vector<double>> c, std::span<const Register> rates);
 
   std::shared_ptr<const SeriesEquations> equations;
+  std::shared_ptr<NativeCompiler> native;  // null: none
   std::uint32_t states_begin, states_end;
   std::vector<double> variables;
   bool is_stale = true;  // a number has changed
@@ -43,6 +48,12 @@ struct SolutionSeries::Program {
   Register zero = 0;                    // that of a 0
   std::vector<Number> numbers{};
   std::vector<double> exponents{};  // as they are now
+
+  std::size_t members = 0;                     // of all operations
+  bool is_compiled = false;                    // as soon as that pays
+  std::shared_ptr<NativeFunction> function{};  // of this order and these derivatives
+  std::size_t function_order = 0;
+  std::vector<Register> function_rates{};
 };
 
 /// Writes the series of a Program, level by level: the operands of an operation are on levels below its own.
@@ -73,7 +84,11 @@ class SeriesCompiler {
         by_level[below + 1].push_back(id);
       }
     }
-    for (const auto& [level, nodes] : by_level) write_level(nodes);
+    std::vector<std::vector<Nodes>> levels;
+    for (const auto& [level, nodes] : by_level) levels.push_back(families(nodes));
+    split(levels);
+    for (const std::vector<Nodes>& level : levels)
+      for (const Nodes& family : level) write_family(family);
     s_.derivatives.clear();
     for (const NodeId id : s_.equations->derivatives) s_.derivatives.push_back(place_of(id));
     count_ = 1;
@@ -86,7 +101,8 @@ class SeriesCompiler {
   using Kind = std::tuple<Op, std::array<bool, 3>, bool, std::uint32_t, double>;
 
   static constexpr Register nowhere = std::numeric_limits<Register>::max();
-  static constexpr std::size_t least_together = 4;
+  static constexpr std::size_t least_together = 4, least_part = 8;  // members
+  static constexpr std::size_t most_to_split = 100'000;             // nodes
 
   bool is_state(std::uint32_t variable) const { return variable >= s_.states_begin && variable < s_.states_end; }
   bool moves(NodeId id) const { return level_[id.index] > 0; }
@@ -125,16 +141,74 @@ class SeriesCompiler {
     return {node.op, moving, is_square, is_table ? node.number : 0, std::isnan(power) ? 0.5 : power};
   }
 
-  void write_level(const Nodes& nodes) {
+  /// The nodes of a level that are written alike.
+  std::vector<Nodes> families(const Nodes& nodes) {
     std::map<Kind, Nodes> kinds;
     for (const NodeId id : nodes) kinds[kind_of(id)].push_back(id);
-    for (auto& [kind, members] : kinds) {
-      if (members.size() < least_together) {
-        for (const NodeId id : members) write({id});
-      } else {
-        std::ranges::sort(members, {}, [&](NodeId id) { return places_of(id); });
-        write(members);
+    std::vector<Nodes> result;
+    for (auto& [kind, members] : kinds) result.push_back(std::move(members));
+    return result;
+  }
+
+  /// Takes families apart by what reads their members, and by what these read: the differences of N bodies by their
+  /// axes. The parts then lie as those that they are computed with, and fewer have to be copied.
+  void split(std::vector<std::vector<Nodes>>& levels) {
+    if (nodes_.size() > most_to_split) return;
+    std::vector<std::vector<std::size_t>> readers(graph_.size());  // 4 times a reader and which argument
+    std::vector<std::size_t> family(graph_.size(), 0);             // of a node; 0: none
+    std::size_t count = 0;
+    for (const std::vector<Nodes>& level : levels) {
+      for (const Nodes& members : level) {
+        ++count;
+        for (const NodeId id : members) {
+          family[id.index] = count;
+          std::size_t k = 0;
+          for (const NodeId argument : arguments(graph_[id])) readers[argument.index].push_back(4 * id.index + k++);
+        }
       }
+    }
+    const auto by_readers = [&](NodeId id) {
+      std::vector<std::size_t> sign;
+      for (const std::size_t reader : readers[id.index]) sign.push_back(4 * family[reader / 4] + reader % 4);
+      std::ranges::sort(sign);
+      sign.erase(std::ranges::unique(sign).begin(), sign.end());
+      return sign;
+    };
+    const auto by_arguments = [&](NodeId id) {
+      std::vector<std::size_t> sign;
+      for (const NodeId argument : arguments(graph_[id])) sign.push_back(family[argument.index]);
+      return sign;
+    };
+    for (auto level = levels.rbegin(); level != levels.rend(); ++level) split_level(*level, by_readers, family, count);
+    for (std::vector<Nodes>& level : levels) split_level(level, by_arguments, family, count);
+  }
+  template <class Sign>
+  static void split_level(std::vector<Nodes>& level, Sign&& sign_of, std::vector<std::size_t>& family,
+                          std::size_t& count) {
+    std::vector<Nodes> result;
+    for (Nodes& members : level) {
+      std::map<std::vector<std::size_t>, Nodes> parts;
+      if (members.size() >= 2 * least_part)
+        for (const NodeId id : members) parts[sign_of(id)].push_back(id);
+      if (parts.size() < 2 || std::ranges::any_of(parts, [](auto& part) { return part.second.size() < least_part; })) {
+        result.push_back(std::move(members));
+        continue;
+      }
+      for (auto& [sign, part] : parts) {
+        ++count;
+        for (const NodeId id : part) family[id.index] = count;
+        result.push_back(std::move(part));
+      }
+    }
+    level = std::move(result);
+  }
+
+  void write_family(Nodes members) {
+    if (members.size() < least_together) {
+      for (const NodeId id : members) write({id});
+    } else {
+      std::ranges::sort(members, {}, [&](NodeId id) { return places_of(id); });
+      write(members);
     }
   }
   std::array<Register, 3> places_of(NodeId id) {
@@ -428,7 +502,13 @@ std::vector<double> SolutionSeries::Program::values_of(std::span<const NodeId> n
 
 void SolutionSeries::Program::renew() {
   std::vector<double> exponents_now = values_of(equations->exponents);
-  if (derivatives.empty() || exponents_now != exponents) SeriesCompiler(*this, exponents_now).compile();
+  if (derivatives.empty() || exponents_now != exponents) {
+    SeriesCompiler(*this, exponents_now).compile();
+    function.reset();
+    is_compiled = is_worth_compiling(series);
+    members = 0;
+    for (const SeriesOperation& o : series.operations()) members += o.count;
+  }
   exponents = std::move(exponents_now);
   std::vector<NodeId> nodes;
   for (const Number& number : numbers)
@@ -438,6 +518,53 @@ void SolutionSeries::Program::renew() {
   for (std::size_t n = 0; n < numbers.size(); ++n)
     series.set_number(n, numbers[n].node.valid() ? *value++ : numbers[n].value);
   is_stale = false;
+}
+
+/// What the text of the function is made of, as bytes.
+std::string key_of(const SeriesProgram<double>& series, std::span<const Register> rates, std::size_t order) {
+  std::string key = "series";
+  const auto append = [&](const auto& list) {
+    for (const auto part : list) key.append(reinterpret_cast<const char*>(&part), sizeof part);
+  };
+  append(std::array{order, rates.size(), series.row_size()});
+  for (const SeriesOperation& o : series.operations())
+    append(std::array{static_cast<std::uint32_t>(o.code), o.result, o.count, o.a, o.b, o.c});
+  append(series.copied());
+  append(rates);
+  return key;
+}
+
+NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::span<const Register> rates) {
+  if (!native || !is_compiled) return nullptr;
+  if (!function || function_order != order || !std::ranges::equal(function_rates, rates)) {
+    function_order = order;
+    function_rates.assign(rates.begin(), rates.end());
+    function = native->function(key_of(series, rates, order), [program = series, order, list = function_rates] {
+      return series_source(program, list, order);
+    });
+  }
+  return function.get();
+}
+
+void SolutionSeries::Program::expand(double t, double scale, std::span<std::vector<double>> c,
+                                     std::span<const Register> rates) {
+  const std::size_t order = c.size() - 1, n = rates.size();
+  NativeFunction* const ready = function_of(order, rates);
+  if (ready == nullptr || ready->code() == nullptr) {
+    expand_solution<double, std::vector<double>>(series, rates, t, scale, c);
+    if (ready != nullptr) ready->count(members * order * order / 4);
+    return;
+  }
+  series.begin(order);
+  const std::span<double> rows = series.rows();
+  rows[0] = t;
+  std::ranges::copy(c[0], rows.begin() + 1);
+  reinterpret_cast<NativeSeries>(ready->code())(rows.data(), scale);
+  for (std::size_t k = 1; k <= order; ++k) {
+    const double* const row = rows.data() + k * series.row_size() + 1;
+    double* const to = c[k].data();
+    for (std::size_t i = 0; i < n; ++i) to[i] = row[i];
+  }
 }
 
 SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives,
@@ -453,6 +580,7 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
   for (const NodeId id : reachable(equations->graph, equations->derivatives))
     if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
   program_ = std::make_unique<Program>(Program{.equations = std::move(equations),
+                                               .native = program.model.native,
                                                .states_begin = layout.states,
                                                .states_end = states_end,
                                                .variables = {variables.begin(), variables.end()}});
@@ -481,11 +609,10 @@ void SolutionSeries::set(std::uint32_t variable, double value) {
 void SolutionSeries::expand(double t, double scale, std::span<std::vector<double>> c,
                             std::span<const std::size_t> held) {
   if (program_->is_stale) program_->renew();
-  SeriesProgram<double>& series = program_->series;
-  if (held.empty()) return expand_solution<double, std::vector<double>>(series, program_->derivatives, t, scale, c);
+  if (held.empty()) return program_->expand(t, scale, c, program_->derivatives);
   std::vector<Register> derivatives = program_->derivatives;
   for (const std::size_t i : held) derivatives[i] = program_->zero;
-  expand_solution<double, std::vector<double>>(series, derivatives, t, scale, c);
+  program_->expand(t, scale, c, derivatives);
 }
 
 }  // namespace continuo::model
