@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -510,10 +511,16 @@ class TapeWriter {
     };
     const auto to = [](std::uint32_t place, std::string_view index) { return element("y", place, index); };
     for (const tape::Place& place : many.alone) output(place.from, place.to);
-    for (const tape::Copy& copy : many.regular) {
-      note_range(copy.from_begin, copy.from_begin + (copy.count - 1) * copy.from_step + 1);
-      loop(copy.count, fmt::format("{} = {};", to(copy.to_begin, times(copy.to_step)),
-                                   from(copy.from_begin, times(copy.from_step))));
+    for (std::size_t n = 0; n < many.regular.size();) {
+      const tape::Copy& copy = many.regular[n];
+      const Rows rows = rows_at(std::span(many.regular).subspan(n));
+      const auto last = static_cast<std::uint32_t>(rows.count - 1);
+      note_range(copy.from_begin, copy.from_begin + (copy.count - 1) * copy.from_step + last * rows.from_step + 1);
+      if (rows.count > 1) line(fmt::format("for (int j = 0; j < {}; ++j) {{", rows.count));
+      loop(copy.count, fmt::format("{} = {};", to(copy.to_begin, in_row(copy.to_step, rows.to_step)),
+                                   from(copy.from_begin, in_row(copy.from_step, rows.from_step))));
+      if (rows.count > 1) line("}");
+      n += rows.count;
     }
     for (const tape::Turns& turns : many.joined) {
       note_range(turns.first, turns.first + turns.count);
@@ -524,6 +531,29 @@ class TapeWriter {
       note_range(turns.together, turns.together + 2 * turns.count);
       loop(turns.count, parted(turns, from, to));
     }
+  }
+  /// The rows of a grid: copies that are one loop round one.
+  struct Rows {
+    std::size_t count = 1;
+    std::uint32_t from_step = 0, to_step = 0;
+  };
+  static Rows rows_at(std::span<const tape::Copy> copies) {
+    Rows rows;
+    for (; rows.count < copies.size(); ++rows.count) {
+      const tape::Copy &row = copies[rows.count - 1], &next = copies[rows.count];
+      if (next.count != row.count || next.from_step != row.from_step || next.to_step != row.to_step) break;
+      if (next.from_begin < row.from_begin || next.to_begin < row.to_begin) break;
+      const std::uint32_t from_step = next.from_begin - row.from_begin, to_step = next.to_begin - row.to_begin;
+      if (rows.count > 1 && (from_step != rows.from_step || to_step != rows.to_step)) break;
+      rows.from_step = from_step;
+      rows.to_step = to_step;
+    }
+    return rows.count < 3 ? Rows{} : rows;
+  }
+  static std::string in_row(std::uint32_t step, std::uint32_t row_step) {
+    const std::string place = times(step);
+    if (row_step == 0) return place;
+    return place.empty() ? fmt::format("{}*j", row_step) : fmt::format("{}*j + {}", row_step, place);
   }
   void note_range(std::uint32_t begin, std::uint32_t end) { static_cast<void>(array_of(begin, end)); }
 
