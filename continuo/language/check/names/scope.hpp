@@ -17,6 +17,11 @@ struct Index {
   std::string_view name;
   long value;
   const Index* outer = nullptr;
+
+  /// Nearly every index has one letter, and nearly every question is about one.
+  [[nodiscard]] bool is_called(std::string_view text) const {
+    return text.size() == name.size() && text.front() == name.front() && (text.size() == 1 || text == name);
+  }
 };
 
 /// Which member of the families around it a statement is written out for, and in which mode it stands. It is kept for
@@ -29,7 +34,7 @@ struct Instance {
   /// Null where no family around it has an index of this name.
   [[nodiscard]] const Index* find_index(std::string_view name) const {
     const Index* index = innermost;
-    while (index && index->name != name) index = index->outer;
+    while (index && !index->is_called(name)) index = index->outer;
     return index;
   }
 };

@@ -62,6 +62,7 @@ void make_room(Workspace& workspace) {
   const Layout& layout = workspace.layout;
   workspace.registers.assign(layout.size, 0.0);
   workspace.units.reserve(layout.unknowns - layout.states);
+  workspace.state_nodes.resize(layout.unknowns - layout.states);
   workspace.unknown_units.resize(workspace.declared.unknowns.size(), Measured::unknown());
 }
 
