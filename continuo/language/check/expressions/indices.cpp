@@ -88,11 +88,24 @@ bool Indices::is_wanted(const ast::Sum& sum, Scope& scope) const {
 bool Indices::count_written_out(Span span) const {
   std::size_t& count = workspace_.written_out;
   if (++count <= most_written_out) return true;
-  if (count > most_written_out + 1) return false;  // said already
+  if (count == most_written_out + 1) refuse_size(span);
+  return false;
+}
+
+/// A range that is too long is refused before its members are written out.
+bool Indices::has_room(long first, long last, Span span) const {
+  std::size_t& count = workspace_.written_out;
+  if (count > most_written_out) return false;  // said already
+  if (last < first || static_cast<std::size_t>(last - first) < most_written_out - count) return true;
+  count = most_written_out + 1;
+  refuse_size(span);
+  return false;
+}
+
+void Indices::refuse_size(Span span) const {
   report_.fail("E221", span, "the model is too large",
                fmt::format("more than {} members of families and terms of sums", most_written_out),
                "each takes about 1 kB of memory: take fewer points, or write this system in C++");
-  return false;
 }
 
 }  // namespace continuo::model::detail

@@ -37,6 +37,7 @@ class Indices {
   bool for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
     const auto ends = bounds(range, scope);
     if (!ends) return false;
+    if (!has_room(ends->first, ends->second, range.span)) return true;
     Index mine{index.text, 0, scope.innermost};
     scope.innermost = &mine;
     for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
@@ -67,6 +68,8 @@ class Indices {
   }
 
  private:
+  [[nodiscard]] bool has_room(long first, long last, Span span) const;
+  void refuse_size(Span span) const;
   [[nodiscard]] const Index* keep(const Index& index) const;
   [[nodiscard]] bool is_wanted(const ast::Sum& sum, Scope& scope) const;
 
