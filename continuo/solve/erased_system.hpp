@@ -38,8 +38,8 @@ template <State X>
 class ErasedSystem {
  public:
   /// Keeps a copy of f.
-  template <RightHandSide<X> F>
-    requires(std::copy_constructible<F> && !std::same_as<F, ErasedSystem>)
+  template <class F>
+    requires(!std::same_as<F, ErasedSystem>) && std::copy_constructible<F> && RightHandSide<F, X>
   explicit ErasedSystem(F f)
       : f_([f = std::move(f)](const Scalar<X>& t, const X& x, X& dxdt) mutable {
           if constexpr (WritesDerivative<F, X>) {
