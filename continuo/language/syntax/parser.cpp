@@ -260,20 +260,12 @@ ast::Mode Parser::parse_mode() {
 
 /// `for i in 1..N, j in 1..M { ... }` is a family of families.
 ast::Family Parser::parse_family(Context context) {
-  auto [index, range] = parse_index();
-  indices_.push_back(index.text);
-  std::vector<Statement> body;
-  if (accept(TokenKind::comma)) {
-    const Nesting nesting(*this);
-    const std::uint32_t begin = current().span.begin;
-    ast::Family inner = parse_family(context);
-    body.push_back({std::move(inner), since(begin)});
-  } else {
-    body = parse_statements("`{` with what is repeated", context == Context::mode ? Context::mode : Context::family);
+  return parse_indices<ast::Family>([&] {
+    std::vector<Statement> body =
+        parse_statements("`{` with what is repeated", context == Context::mode ? Context::mode : Context::family);
     expect_statement_end();
-  }
-  indices_.pop_back();
-  return {std::move(index), std::move(range), std::move(body)};
+    return body;
+  });
 }
 
 void Parser::explain_left_side(const Expression& left) {

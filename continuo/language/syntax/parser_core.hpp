@@ -165,6 +165,24 @@ class Parser {
   [[nodiscard]] std::vector<ast::Statement> parse_statements(std::string_view wanted, Context context);
   /// `i in 1..N` of families and sums.
   [[nodiscard]] std::pair<ast::Identifier, ast::Range> parse_index(int* height = nullptr);
+  /// The indices of a family and what it repeats, which `read_body` reads; several indices are families inside each
+  /// other, the last one innermost.
+  template <class Family, class ReadBody>
+  [[nodiscard]] Family parse_indices(const ReadBody& read_body) {
+    auto [index, range] = parse_index();
+    indices_.push_back(index.text);
+    decltype(Family::body) body;
+    if (accept(TokenKind::comma)) {
+      const Nesting nesting(*this);
+      const std::uint32_t begin = current().span.begin;
+      Family inner = parse_indices<Family>(read_body);
+      body.push_back({std::move(inner), since(begin)});
+    } else {
+      body = read_body();
+    }
+    indices_.pop_back();
+    return {std::move(index), std::move(range), std::move(body)};
+  }
 
   // --- events (parser_events.cpp)
   [[nodiscard]] ast::When parse_when();

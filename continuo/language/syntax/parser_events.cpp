@@ -239,19 +239,7 @@ ast::Stop Parser::parse_stop() {
 }
 
 ast::ActionFamily Parser::parse_action_family() {
-  auto [index, range] = parse_index();
-  indices_.push_back(index.text);
-  std::vector<ast::Action> body;
-  if (accept(TokenKind::comma)) {
-    const Nesting nesting(*this);
-    const std::uint32_t begin = current().span.begin;
-    ast::ActionFamily inner = parse_action_family();
-    body.push_back({std::move(inner), since(begin)});
-  } else {
-    body = parse_actions("`{` with the repeated actions");
-  }
-  indices_.pop_back();
-  return {std::move(index), std::move(range), std::move(body)};
+  return parse_indices<ast::ActionFamily>([&] { return parse_actions("`{` with the repeated actions"); });
 }
 
 }  // namespace continuo::model::detail

@@ -189,19 +189,11 @@ ast::Draw Parser::parse_draw() {
 }
 
 ast::DrawFamily Parser::parse_draw_family() {
-  auto [index, range] = parse_index();
-  indices_.push_back(index.text);
-  std::vector<ast::DrawItem> body;
-  if (accept(TokenKind::comma)) {
-    const Nesting nesting(*this);
-    const std::uint32_t begin = current().span.begin;
-    ast::DrawFamily inner = parse_draw_family();
-    body.push_back({std::move(inner), since(begin)});
-  } else {
+  return parse_indices<ast::DrawFamily>([&] {
+    std::vector<ast::DrawItem> body;
     read_block("`{` with what is drawn for each", [&] { body.push_back(parse_draw_item()); });
-  }
-  indices_.pop_back();
-  return {std::move(index), std::move(range), std::move(body)};
+    return body;
+  });
 }
 
 ast::DrawItem Parser::parse_draw_item() {

@@ -282,20 +282,12 @@ ast::WorldIgnore Parser::parse_world_ignore() {
 }
 
 ast::WorldFamily Parser::parse_world_family() {
-  auto [index, range] = parse_index();
-  indices_.push_back(index.text);
-  std::vector<ast::WorldItem> body;
-  if (accept(TokenKind::comma)) {
-    const Nesting nesting(*this);
-    const std::uint32_t begin = current().span.begin;
-    ast::WorldFamily inner = parse_world_family();
-    body.push_back({std::move(inner), since(begin)});
-  } else {
+  return parse_indices<ast::WorldFamily>([&] {
+    std::vector<ast::WorldItem> body;
     read_block("`{` with what is repeated", [&] { body.push_back(parse_world_item()); });
     expect_statement_end();
-  }
-  indices_.pop_back();
-  return {std::move(index), std::move(range), std::move(body)};
+    return body;
+  });
 }
 
 ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Word> known, bool all_names) {
