@@ -8,13 +8,19 @@ add_library(Continuo::Continuo ALIAS continuo_all)
 foreach(module IN LISTS modules)
   target_link_libraries(continuo_all INTERFACE continuo_${module})
 endforeach()
+# Continuo::precompiled_solve is Continuo::solve with its headers precompiled, once for the project that links it.
+add_library(continuo_precompiled_solve INTERFACE)
+set_target_properties(continuo_precompiled_solve PROPERTIES EXPORT_NAME precompiled_solve)
+add_library(Continuo::precompiled_solve ALIAS continuo_precompiled_solve)
+target_link_libraries(continuo_precompiled_solve INTERFACE continuo_solve)
+target_precompile_headers(continuo_precompiled_solve INTERFACE <continuo/solve/automatic.hpp>)
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()  # a project that contains Continuo installs itself
 endif()
 
 include(CMakePackageConfigHelpers)
 list(TRANSFORM modules PREPEND continuo_ OUTPUT_VARIABLE libraries)
-install(TARGETS ${libraries} continuo_all EXPORT ContinuoTargets)
+install(TARGETS ${libraries} continuo_all continuo_precompiled_solve EXPORT ContinuoTargets)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Continuo)
 install(CODE "set(sources \"${PROJECT_SOURCE_DIR}\")")

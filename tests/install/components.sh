@@ -36,7 +36,7 @@ must_say() {  # text sentence: line breaks and indents of the text do not count
 
 configure solve solve >"$scratch/log" || { cat "$scratch/log" >&2; exit 1; }
 "$cmake" --build "$scratch/solve" >"$scratch/log" || { cat "$scratch/log" >&2; exit 1; }
-for program in nonstiff stiff events; do "$scratch/solve/$program"; done
+for program in nonstiff stiff events precompiled; do "$scratch/solve/$program"; done
 
 must_say "$("$cmake" --build "$scratch/solve" --target pattern 2>&1 || true)" \
   "needs the sparse solver KLU: install libsuitesparse-dev"
