@@ -31,7 +31,8 @@ cmake --build build >&2
 mv build/.built.began build/.built
 cp -p build/.built build/.built_studies  # continuo.sh finds both programs of the command fresh
 
-tests=(ctest --test-dir build --output-on-failure --parallel "$(nproc)")
+# One more than there are processors, as the tests of the page, which run one at a time, mostly wait for the browser.
+tests=(ctest --test-dir build --output-on-failure --parallel "$(($(nproc) + 1))")
 if (($#)); then exec "${tests[@]}" "$@"; fi
 state=$(state_of_checkout)
 if [[ -z $all && -n $state && -e build/.tested && $(<build/.tested) == "$state" ]]; then
