@@ -18,6 +18,7 @@
 #include <continuo/methods/collocation/collocation_table.hpp>
 #include <continuo/methods/collocation/collocation_workspace.hpp>
 #include <continuo/methods/implicit/implicit_method.hpp>
+#include <continuo/methods/implicit/jacobian_of_step.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/implicit/unknowns_at_end.hpp>
@@ -270,8 +271,7 @@ struct CollocationMethod : ImplicitMethod<> {
   template <class System, State X>
   [[nodiscard]] static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
                                      Workspace<X>& work) {
-    const int evaluations = work.linear.evaluate(system, t, x, work.f,
-                                                 LeastIncrements(work.tolerance, h, x, work.f, work.linear.has_mass()));
+    const int evaluations = detail::evaluate_jacobian_of_step(system, t, x, work.f, h, work.tolerance, work.linear);
     ++work.costs.jacobians;
     work.has_jacobian = true;
     work.jacobian_age = 0;

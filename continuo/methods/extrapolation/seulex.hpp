@@ -28,6 +28,7 @@
 
 #include <continuo/methods/extrapolation/extrapolation_method.hpp>
 #include <continuo/methods/implicit/implicit_method.hpp>
+#include <continuo/methods/implicit/jacobian_of_step.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/implicit/unknowns_between.hpp>
@@ -276,8 +277,7 @@ struct Seulex : ImplicitMethod<>, ExtrapolationMethod<Seulex> {
                                      Workspace<X>& work) {
     ++work.costs.jacobians;
     work.has_jacobian = work.is_current = true;
-    return work.linear.evaluate(system, t, x, work.slope,
-                                LeastIncrements(work.tolerance, h, x, work.slope, work.linear.has_mass()));
+    return detail::evaluate_jacobian_of_step(system, t, x, work.slope, h, work.tolerance, work.linear);
   }
 
   template <State X>

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <continuo/methods/implicit/implicit_method.hpp>
+#include <continuo/methods/implicit/jacobian_of_step.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/implicit/unknowns_between.hpp>
@@ -243,8 +244,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
     }
     if (!discontinuity && work.linear_fresh) return evaluations;
     if (!work.linear.prepared()) work.linear.prepare(system, x);
-    evaluations += work.linear.evaluate(system, t, x, work.slope,
-                                        LeastIncrements(work.tolerance, h, x, work.slope, work.linear.has_mass()));
+    evaluations += detail::evaluate_jacobian_of_step(system, t, x, work.slope, h, work.tolerance, work.linear);
     if (!is_autonomous(system)) evaluations += evaluate_time_derivative(system, t, h, x, work.slope, work.time_slope);
     ++work.costs.jacobians;
     work.linear_fresh = true;
