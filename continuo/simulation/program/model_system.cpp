@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <continuo/numerics/central_difference.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/simulation/program/model_system.hpp>
 #include <continuo/system/jacobian.hpp>
 
@@ -95,11 +96,21 @@ void ModelSystem::place_switches() {
     derivatives_of_f_->set(switches[k].variable, switched_->values()[k]);
 }
 
-/// df/dx of a motion that slides, whose weights depend on x, too: by central differences.
-void ModelSystem::difference_rows(double t, const X& x, std::span<double> rows) {
+/// Central differences in place of what the equations do not give: of all entries where the motion slides, since its
+/// weights depend on x, too; else of those that are not finite, as the slope of a root at 0. Entry (i, j) is
+/// values[place(i, j)]; a place behind them is that of no entry.
+template <class Place>
+void ModelSystem::take_differences(double t, const X& x, std::span<double> values, Place place) {
+  std::vector<double> rows(x.size() * x.size());
   difference_jacobian(
       x, [&](std::size_t j) { return central_increment(x[j], 1e-3); },
-      [&](const X& moved, X& dxdt) { (*this)(t, moved, dxdt); }, rows);
+      [&](const X& moved, X& dxdt) { (*this)(t, moved, dxdt); }, std::span(rows));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const std::size_t entry = place(i, j);
+      if (entry < values.size() && (slides() || !std::isfinite(values[entry]))) values[entry] = rows[i * x.size() + j];
+    }
+  }
 }
 
 void ModelSystem::set_all(std::span<const double> variables) {
@@ -110,20 +121,18 @@ void ModelSystem::set_all(std::span<const double> variables) {
 }
 
 void ModelSystem::jacobian(double t, const X& x, std::span<double> rows) {
-  if (slides()) return difference_rows(t, x, rows);
-  derivatives_of_f().jacobian(mode_, t, x, rows);
+  if (!slides()) derivatives_of_f().jacobian(mode_, t, x, rows);
+  if (slides() || !all_finite(rows))
+    take_differences(t, x, rows, [&](std::size_t i, std::size_t j) { return i * x.size() + j; });
   for (const std::size_t i : held_) std::ranges::fill(rows.subspan(i * x.size(), x.size()), 0.0);
 }
 
 void ModelSystem::jacobian_values(double t, const X& x, std::span<double> values) {
   derivatives_of_f().jacobian_values(mode_, t, x, values);
   const SparsePattern& pattern = jacobian_pattern();
-  if (slides() && pattern.entries() == x.size() * x.size()) {
-    std::vector<double> rows(pattern.entries());
-    difference_rows(t, x, rows);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      for (std::size_t j = 0; j < x.size(); ++j) values[pattern.find(i, j)] = rows[i * x.size() + j];
-  }
+  const bool slides_in_full = slides() && pattern.entries() == x.size() * x.size();
+  if (slides_in_full || !all_finite(values))
+    take_differences(t, x, values, [&](std::size_t i, std::size_t j) { return pattern.find(i, j); });
   for (const std::size_t i : held_) {
     for (std::size_t column = 0; column < x.size(); ++column) {
       const std::size_t entry = pattern.find(i, column);
@@ -134,18 +143,16 @@ void ModelSystem::jacobian_values(double t, const X& x, std::span<double> values
 
 void ModelSystem::jacobian_band(double t, const X& x, std::span<double> band) {
   derivatives_of_f().jacobian_band(mode_, t, x, band);
-  if (held_.empty() && !slides()) return;
   const SparsePattern& pattern = jacobian_pattern();
   const BandLayout layout = pattern.band();
-  if (slides() && pattern.entries() == x.size() * x.size()) {
-    std::vector<double> rows(pattern.entries());
-    difference_rows(t, x, rows);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      for (std::size_t j = 0; j < x.size(); ++j) band[layout.place(i, j)] = rows[i * x.size() + j];
-  }
+  const auto place = [&](std::size_t i, std::size_t j) {
+    return pattern.find(i, j) < pattern.entries() ? layout.place(i, j) : band.size();
+  };
+  const bool slides_in_full = slides() && pattern.entries() == x.size() * x.size();
+  if (slides_in_full || !all_finite(band)) take_differences(t, x, band, place);
   for (const std::size_t i : held_) {
     for (std::size_t column = 0; column < x.size(); ++column)
-      if (pattern.find(i, column) < pattern.entries()) band[layout.place(i, column)] = 0;
+      if (place(i, column) < band.size()) band[place(i, column)] = 0;
   }
 }
 
@@ -154,7 +161,7 @@ void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
   if (program_->linear_inputs.empty() && !slides()) {
     derivatives_of_f().time_derivative(mode_, t, x, dfdt);
     for (const std::size_t i : held_) dfdt[i] = 0;
-    return;
+    if (all_finite(dfdt)) return;
   }
   const double increment = difference_increment(t, std::sqrt(std::numeric_limits<double>::epsilon()));
   X now(x.size());

@@ -126,7 +126,8 @@ class ModelSystem {
   template <class Visit>
   void for_each(Visit&& visit);
   void place_switches();
-  void difference_rows(double t, const X& x, std::span<double> rows);
+  template <class Place>
+  void take_differences(double t, const X& x, std::span<double> values, Place place);
   [[nodiscard]] ModelDerivatives& derivatives_of_f();
 
   std::shared_ptr<const ModelProgram> program_;

@@ -5,10 +5,21 @@
 #include <utility>
 
 #include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/simulation/program/switched_motion.hpp>
 #include <continuo/solve/events/guard_motion.hpp>
 
 namespace continuo::model {
+namespace {
+
+/// The value of a switch where its surface has the value z.
+double natural_value(const Switch& one, double z) {
+  if (one.kind == Switch::Kind::floor) return std::floor(z);
+  if (one.kind == Switch::Kind::sign) return static_cast<double>((z > 0) - (z < 0));
+  return z > 0 || (z == 0 && one.closed) ? 1 : 0;
+}
+
+}  // namespace
 
 SwitchedMotion::SwitchedMotion(const ModelProgram& program, std::span<const double> variables) : program_(&program) {
   std::size_t most = 0;
@@ -40,8 +51,28 @@ void SwitchedMotion::place(std::size_t mode, std::size_t k, double value) {
   modes_[mode].approach.place(variable, value);
 }
 
-void SwitchedMotion::approach(std::size_t mode, double t, const X& x, std::span<double> values) {
-  modes_[mode].approach(t, x, values);
+/// A step looks for the crossing of a surface a little beyond it, where the equations of this side may have no value:
+/// `sqrt(max(h, 0))` held as sqrt(h), at a level that falls through 0. There every switch but that asked for, and those
+/// along whose surfaces the motion slides, has the value of the place. The step ends at the surface, and its error
+/// estimate sees the corner, as that of a step without switches.
+void SwitchedMotion::evaluate(std::size_t mode, Evaluation& equations, double t, const X& x, std::span<double> values,
+                              std::size_t asked) {
+  equations(t, x, values);
+  if (all_finite(values)) return;
+  const std::vector<double> kept = values_;
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (k != asked && !slides_along(k)) place(mode, k, natural_value(switches(mode)[k], surface(mode, k, t, x)));
+  equations(t, x, values);
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (values_[k] != kept[k]) place(mode, k, kept[k]);
+}
+
+void SwitchedMotion::side_rates(std::size_t mode, double t, const X& x, X& dxdt) {
+  evaluate(mode, modes_[mode].rates, t, x, dxdt, none);
+}
+
+void SwitchedMotion::approach(std::size_t mode, double t, const X& x, std::span<double> values, std::size_t asked) {
+  evaluate(mode, modes_[mode].approach, t, x, values, asked);
 }
 
 double SwitchedMotion::surface(std::size_t mode, std::size_t k, double t, const X& x) {
@@ -71,17 +102,17 @@ std::vector<double> SwitchedMotion::weights(std::size_t mode, double t, const X&
 
 void SwitchedMotion::rates(std::size_t mode, double t, const X& x, X& dxdt) {
   if (sliding_.empty()) {
-    modes_[mode].rates(t, x, dxdt);
+    side_rates(mode, t, x, dxdt);
     return;
   }
   const std::vector<double> part = weights(mode, t, x);
   base_.resize(x.size());
   other_.resize(x.size());
-  modes_[mode].rates(t, x, base_);
+  side_rates(mode, t, x, base_);
   dxdt = base_;
   for (std::size_t i = 0; i < sliding_.size(); ++i) {
     place(mode, sliding_[i].k, sliding_[i].above);
-    modes_[mode].rates(t, x, other_);
+    side_rates(mode, t, x, other_);
     for (std::size_t s = 0; s < x.size(); ++s) dxdt[s] += part[i] * (other_[s] - base_[s]);
     place(mode, sliding_[i].k, sliding_[i].below);
   }
@@ -119,16 +150,16 @@ double SwitchedMotion::approach_of(std::size_t mode, std::size_t k, double value
   double rate = 0;
   if (slides()) {
     const std::vector<double> part = weights(mode, t, x);
-    approach(mode, t, x, values);
+    approach(mode, t, x, values, k);
     const double base = rate = values[k];
     for (std::size_t i = 0; i < sliding_.size(); ++i) {
       place(mode, sliding_[i].k, sliding_[i].above);
-      approach(mode, t, x, values);
+      approach(mode, t, x, values, k);
       rate += part[i] * (values[k] - base);
       place(mode, sliding_[i].k, sliding_[i].below);
     }
   } else {
-    approach(mode, t, x, values);
+    approach(mode, t, x, values, k);
     rate = values[k];
   }
   place(mode, k, kept);
@@ -191,9 +222,7 @@ bool SwitchedMotion::settle_one(std::size_t mode, std::size_t k, double t, const
   const double off = one.kind == Switch::Kind::floor ? z - std::round(z) : z;
   bool on_surface = std::abs(off) <= rounding(mode, k, t, x);
   if (before != nullptr && slid[k] != 0 && surface(mode, k, t, *before) == z) on_surface = true;
-  double natural = one.kind == Switch::Kind::floor ? std::floor(z) : static_cast<double>((z > 0) - (z < 0));
-  if (one.kind == Switch::Kind::relation) natural = z > 0 || (z == 0 && one.closed) ? 1 : 0;
-  place(mode, k, natural);
+  place(mode, k, natural_value(one, z));
   if (on_surface) choose(mode, sides_of(mode, k, z), t, x);
   return values_[k] != kept;
 }

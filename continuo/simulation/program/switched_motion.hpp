@@ -85,6 +85,7 @@ class SwitchedMotion {
   [[nodiscard]] std::span<const Sliding> sliding() const { return sliding_; }
 
  private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
   struct OfMode {
     Evaluation rates, surfaces, approach;
   };
@@ -92,7 +93,10 @@ class SwitchedMotion {
     return program_->switches[mode].switches;
   }
   void place(std::size_t mode, std::size_t k, double value);
-  void approach(std::size_t mode, double t, const X& x, std::span<double> values);
+  void approach(std::size_t mode, double t, const X& x, std::span<double> values, std::size_t asked = none);
+  void side_rates(std::size_t mode, double t, const X& x, X& dxdt);
+  void evaluate(std::size_t mode, Evaluation& equations, double t, const X& x, std::span<double> values,
+                std::size_t asked);
   [[nodiscard]] std::vector<double> weights(std::size_t mode, double t, const X& x);
   [[nodiscard]] double approach_of(std::size_t mode, std::size_t k, double value, double t, const X& x);
   Passage choose(std::size_t mode, Sliding sides, double t, const X& x);
