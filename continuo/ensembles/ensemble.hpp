@@ -22,7 +22,7 @@
 #include <utility>
 
 #include <continuo/ensembles/ensemble_options.hpp>
-#include <continuo/ensembles/lanes/lane_driver.hpp>
+#include <continuo/ensembles/lanes/lane_groups.hpp>
 #include <continuo/ensembles/run_result.hpp>
 #include <continuo/ensembles/run_start.hpp>
 #include <continuo/ensembles/worker_threads.hpp>
@@ -79,7 +79,7 @@ template <std::size_t W = default_lanes, class F, RunStarts Starts, class M, cla
   detail::RunQueue<X, P> queue(starts.size(), options, result.runs);
   detail::on_threads(options.threads, (starts.size() + W - 1) / W, [&] {
     try {
-      detail::LaneDriver<F, Starts, M, W, Events...>(f, starts, settings, queue).run();
+      detail::LaneGroups<F, Starts, M, W, Events...>(f, starts, settings, queue).run();
     } catch (...) {
       queue.stop();
       throw;

@@ -30,7 +30,7 @@ class LaneDriver {
   using Queue = RunQueue<X, P>;
   using Settings = RunSettings<X, P, E...>;
 
-  /// For the runs of a queue that is not empty.
+  /// For the runs of a queue that is not empty. It takes them when told to.
   LaneDriver(const F& f, const Starts& starts, const Settings& settings, Queue& queue)
       : f_(f),
         starts_(starts),
@@ -51,19 +51,48 @@ class LaneDriver {
   LaneDriver(const LaneDriver&) = delete;
   LaneDriver& operator=(const LaneDriver&) = delete;
 
-  /// Works until the queue is empty.
-  void run() {
-    while (true) {
-      refill();
-      if (active_ == 0) {
-        if (!pending_) return;
-        queue_.wait_for_room(*pending_);
-        if (queue_.stopped()) return;
-        continue;
+  /// Whether a run is on its way in any lane.
+  [[nodiscard]] bool is_active() const { return active_ > 0; }
+  /// Whether an idle lane can take a run now.
+  [[nodiscard]] bool idle_can_begin() const {
+    return active_ < W && !exhausted_ && (!pending_ || queue_.has_room_for(*pending_));
+  }
+  /// The run that waits for room, if any.
+  [[nodiscard]] const std::optional<std::size_t>& pending() const { return pending_; }
+
+  /// Gives every idle lane a run, as long as there are any.
+  void refill() {
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      while (!sizes_.is_active(lane) && !exhausted_) {
+        if (!pending_) pending_ = queue_.take();
+        if (!pending_) {
+          exhausted_ = true;
+        } else if (!queue_.has_room_for(*pending_)) {
+          return;
+        } else {
+          begin(*std::exchange(pending_, std::nullopt), lane);
+        }
       }
-      do {
-        take_step();
-      } while (active_ > 0 && !idle_can_begin());
+    }
+  }
+
+  /// One step of every run, or several of a fixed size.
+  void take_step() {
+    if constexpr (is_small && !Run::has_events) {
+      if (sizes_.fixed() && !has_rows_) take_free_steps();
+    }
+    sizes_.choose();
+    refresh();
+    step();
+    judge();
+    if (sizes_.any_refused()) [[unlikely]]
+      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
+    commit();
+    if (sizes_.any_refused()) [[unlikely]]
+      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
+    if (++since_look_ >= steps_between_looks) {
+      since_look_ = 0;
+      if (queue_.interrupted()) interrupt();
     }
   }
 
@@ -95,24 +124,6 @@ class LaneDriver {
 
   // ---- runs begin and end
 
-  [[nodiscard]] bool idle_can_begin() const {
-    return active_ < W && !exhausted_ && (!pending_ || queue_.has_room_for(*pending_));
-  }
-  // Gives every idle lane a run, as long as there are any.
-  void refill() {
-    for (std::size_t lane = 0; lane < W; ++lane) {
-      while (!sizes_.is_active(lane) && !exhausted_) {
-        if (!pending_) pending_ = queue_.take();
-        if (!pending_) {
-          exhausted_ = true;
-        } else if (!queue_.has_room_for(*pending_)) {
-          return;
-        } else {
-          begin(*std::exchange(pending_, std::nullopt), lane);
-        }
-      }
-    }
-  }
   void begin(std::size_t run, std::size_t lane) {
     auto start = as_run_start(starts_[run]);
     Run& one = runs_[lane];
@@ -185,25 +196,6 @@ class LaneDriver {
   }
 
   // ---- steps
-
-  void take_step() {
-    if constexpr (is_small && !Run::has_events) {
-      if (sizes_.fixed() && !has_rows_) take_free_steps();
-    }
-    sizes_.choose();
-    refresh();
-    step();
-    judge();
-    if (sizes_.any_refused()) [[unlikely]]
-      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
-    commit();
-    if (sizes_.any_refused()) [[unlikely]]
-      sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
-    if (++since_look_ >= steps_between_looks) {
-      since_look_ = 0;
-      if (queue_.interrupted()) interrupt();
-    }
-  }
 
   void step() {
     if constexpr (is_small) {
