@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include <xsimd/xsimd.hpp>
@@ -16,6 +17,7 @@ namespace detail {
 template <class Real, std::size_t W>
 struct LaneParts {
   using Part = Real;
+  using Bits = std::uint32_t;  // of a float
   using MaskPart = bool;
   static constexpr std::size_t count = W;
   [[nodiscard]] static Part select(bool mask, const Part& yes, const Part& no) { return mask ? yes : no; }
@@ -23,6 +25,7 @@ struct LaneParts {
 template <class Batch, std::size_t W>
 struct BatchParts {
   using Part = Batch;
+  using Bits = xsimd::batch<std::uint32_t, typename Batch::arch_type>;
   using MaskPart = typename Batch::batch_bool_type;
   static constexpr std::size_t count = W / Batch::size;
   [[nodiscard]] static Part select(const MaskPart& mask, const Part& yes, const Part& no) {
@@ -69,7 +72,15 @@ class LaneMask {
     return map([](const Part& x, const Part& y) { return Part(x | y); }, a, b);
   }
   friend LaneMask operator!(const LaneMask& a) {
-    return map([](const Part& x) { return Part(!x); }, a);
+    return map(
+        [](const Part& x) {
+          if constexpr (std::same_as<Part, bool>) {
+            return !x;
+          } else {
+            return Part(~x);
+          }
+        },
+        a);
   }
   /// @}
 

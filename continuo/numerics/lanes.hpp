@@ -58,6 +58,21 @@ class Lanes {
   void set(std::size_t lane, Real value) {
     std::memcpy(reinterpret_cast<char*>(&part_) + lane * sizeof(Real), &value, sizeof(Real));
   }
+  /// The first `To::width` lanes in another precision; zeros where there are not so many.
+  template <class To>
+  [[nodiscard]] To to() const {
+    if constexpr (W == To::width && std::has_single_bit(W) && W > 1) {
+      using Number [[gnu::vector_size(W * sizeof(Real))]] = Real;
+      using Other [[gnu::vector_size(W * sizeof(typename To::Scalar))]] = typename To::Scalar;
+      To result;
+      result.part_ = std::bit_cast<typename To::Parts>(__builtin_convertvector(std::bit_cast<Number>(part_), Other));
+      return result;
+    } else {
+      std::array<typename To::Scalar, To::width> result{};
+      for (std::size_t i = 0; i < std::min(W, To::width); ++i) result[i] = static_cast<typename To::Scalar>((*this)[i]);
+      return To(result);
+    }
+  }
   /// The numbers of all lanes.
   [[nodiscard]] std::array<Real, W> values() const { return std::bit_cast<std::array<Real, W>>(part_); }
 
@@ -146,11 +161,33 @@ class Lanes {
   /// @}
   // clang-format on
 
+  // For step controllers, of positive finite floats: see controller.hpp, whose functions of these names do the same.
+  friend Lanes significand(const Lanes& a)
+    requires std::same_as<Real, float>
+  {
+    return map([](const Part& x) { return from_bits<Part>((bits(x) & Bits(0x007fffffU)) | Bits(0x3f800000U)); }, a);
+  }
+  friend Lanes exponent(const Lanes& a)
+    requires std::same_as<Real, float>
+  {
+    // The exponent in the last bits of a number at 2^23, whose distance from 2^23 it is.
+    return map([](const Part& x) { return from_bits<Part>((bits(x) >> 23) | Bits(0x4b000000U)); }, a) -
+           Lanes(0x1p23F + 127.0F);
+  }
+  friend Lanes power_of_two(const Lanes& sum)
+    requires std::same_as<Real, float>
+  {
+    return map([](const Part& x) { return from_bits<Part>((bits(x) + Bits(127U)) << 23); }, sum);
+  }
+
  private:
+  template <std::floating_point, std::size_t>
+  friend class Lanes;
   using Choice = detail::LaneParts<Real, W>;
   using Part = typename Choice::Part;
   static constexpr std::size_t parts = Choice::count;
   using Parts = std::array<Part, parts>;
+  using Bits = typename Choice::Bits;
   Parts part_;
 
   // Functions of doubles go through one kind of register, whatever W is, so that a number has the same function in
@@ -180,6 +217,15 @@ class Lanes {
     return result;
   }
 
+  [[nodiscard]] static Bits bits(const Part& x)
+    requires std::same_as<Real, float>
+  {
+    return std::bit_cast<Bits>(x);
+  }
+  template <class To>
+  [[nodiscard]] static To from_bits(const Bits& x) {
+    return std::bit_cast<To>(x);
+  }
   template <class F, class... A>
   [[nodiscard]] static Lanes each(F f, const A&... a) {
     std::array<Real, W> result;

@@ -57,7 +57,7 @@ class LaneSizes {
         longest_(options.max_step),
         controller_(options.controller),
         max_steps_(static_cast<double>(options.max_steps)),
-        max_rejects_(options.max_rejects_in_a_row) {}
+        max_rejects_(static_cast<float>(options.max_rejects_in_a_row)) {}
 
   [[nodiscard]] bool fixed() const { return step_ > 0; }
 
@@ -81,8 +81,9 @@ class LaneSizes {
     next_.set(lane, size);
     carried_.set(lane, 0.0);
     set_limit(lane, limit);
-    last_error_[lane] = older_error_[lane] = 0;
-    rejects_[lane] = 0;
+    errors_.last.set(lane, 0.0F);
+    errors_.before_last.set(lane, 0.0F);
+    rejects_.set(lane, 0.0F);
   }
   void set_limit(std::size_t lane, double limit) {
     limit_.set(lane, limit);
@@ -146,22 +147,11 @@ class LaneSizes {
 
   /// Judges a step by the squares of its errors, in units of the tolerance.
   void judge(const Wide& square, int error_order) {
-    const std::array<double, W> squares = square.values();
-    std::array<double, W> factors;
     accepted_ = active() & (square <= Wide(1.0));  // not where it is not a number
     const Wide good = select(accepted_, Wide(1.0), Wide(0.0));
-    const std::array<double, W> is_good = good.values();
-    for (std::size_t lane = 0; lane < W; ++lane) {
-      ErrorHistory history{last_error_[lane], older_error_[lane]};
-      const float factor = history.accept(controller_, error_order, static_cast<float>(squares[lane]));
-      const bool keep = is_good[lane] != 0;
-      factors[lane] = static_cast<double>(rejects_[lane] > 0 ? std::min(factor, 1.0F) : factor);
-      last_error_[lane] = keep ? history.last : last_error_[lane];
-      older_error_[lane] = keep ? history.before_last : older_error_[lane];
-      rejects_[lane] = keep ? 0 : rejects_[lane];
-    }
+    const Wide factor = factors_of(square, good, error_order);
     // A step that was shortened by the limit says little about the next one, which is no shorter than planned.
-    const Wide factor(factors), shrunk = h_ * factor;
+    const Wide shrunk = h_ * factor;
     next_ = select(last_, Wide(forward_) * max(abs(planned_), abs(h_) * factor), shrunk);
     // The rounding error of the sum is carried to the next step (W. Kahan), so that a million steps do not drift.
     const Wide wanted = h_ + carried_;
@@ -169,7 +159,7 @@ class LaneSizes {
     carried_ = select(accepted_, select(last_, Wide(0.0), wanted - (end_ - t_)), carried_);
     steps_ += good;
     if (any(active() & !accepted_)) [[unlikely]]
-      reject(squares, error_order);
+      reject(square.values(), error_order);
     if (any(accepted_ & !last_ & (end_ == t_))) [[unlikely]]
       stand_still();
   }
@@ -211,6 +201,18 @@ class LaneSizes {
   }
 
  private:
+  // The factor of each lane for its next step; those in `good` have accepted the last one.
+  [[nodiscard]] Wide factors_of(const Wide& square, const Wide& good, int error_order) {
+    const Floats keep_or_not = good.template to<Floats>(), one(1.0F);
+    const auto keep = keep_or_not != Floats(0.0F);
+    ErrorHistoryOf<Floats> history = errors_;
+    const Floats factor = history.accept(controller_, error_order, square.template to<Floats>());
+    const Floats bounded = select(rejects_ > Floats(0.0F), min(factor, one), factor);
+    errors_.last = select(keep, history.last, errors_.last);
+    errors_.before_last = select(keep, history.before_last, errors_.before_last);
+    rejects_ = select(keep, Floats(0.0F), rejects_);
+    return bounded.template to<Wide>();
+  }
   [[gnu::noinline]] void reject(const std::array<double, W>& squares, int error_order) {
     for (std::size_t lane = 0; lane < W; ++lane) {
       if (!is_active(lane) || accepted_[lane]) continue;
@@ -230,7 +232,7 @@ class LaneSizes {
                           : Ending::step_too_small,
                std::sqrt(square));
       }
-      ++rejects_[lane];
+      rejects_.set(lane, rejects_[lane] + 1.0F);
     }
   }
   // For steps that have not changed t but only the carried rounding error; some may occur at the start of a fast
@@ -249,6 +251,8 @@ class LaneSizes {
     refused_[refused_count_++] = {lane, ending, error};
   }
 
+  // At least a register of floats: those of the lanes, and zeros.
+  using Floats = Lanes<float, (W + 3) / 4 * 4>;
   static constexpr double safety_of_count = 2;  // steps: the last ones are looked at one by one
   static constexpr double parts_of_run = 50;
 
@@ -258,14 +262,15 @@ class LaneSizes {
   std::array<double, W> reach_{};  // the greatest distance of a limit from the start of the run
   Controller controller_;
   double max_steps_;
-  std::size_t max_rejects_;
+  float max_rejects_;
 
   Wide t_, h_, next_, planned_, limit_, end_, carried_, grid_, grid_steps_, on_grid_;
   Wide active_, steps_;
   Mask last_, short_, accepted_;
-  std::array<float, W> last_error_{}, older_error_{};
+  ErrorHistoryOf<Floats> errors_;
+  Floats rejects_;  // in a row
   std::array<double, W> rejected_{};
-  std::array<std::size_t, W> rejects_{}, standing_{};  // in a row
+  std::array<std::size_t, W> standing_{};  // in a row
   std::array<double, W> stood_at_{};
   std::array<Refusal, W> refused_{};
   std::size_t refused_count_ = 0;

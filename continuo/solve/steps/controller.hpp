@@ -33,32 +33,47 @@ inline constexpr Controller PID{0.58, -0.21, 0.1};
 
 namespace detail {
 
-/// log2 of a positive finite number and 2^x, to 0.001: a step size needs no more, and the functions of the library
-/// would take the longest time between one small step and the next. Exponents are taken from the bits. The cubics have
-/// the smallest maximum error among those without a jump from one power of two to the next, and are summed in pairs of
-/// terms, which shortens the chain of operations.
-[[nodiscard]] inline float quick_log2(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  const float m = std::bit_cast<float>((bits & 0x007fffffU) | 0x3f800000U);
-  const float below = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127) - 2.16416994F;
-  return (below + 3.06469457F * m) + m * m * (0.159219831F * m - 1.05974446F);
+/// The parts of a positive finite number, significand(x) * 2^exponent(x), from its bits. Lanes have the same functions.
+[[nodiscard]] inline float significand(float x) {
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(x) & 0x007fffffU) | 0x3f800000U);
 }
-[[nodiscard]] inline float quick_exp2(float x) {  // for x in -126..127, bounded where it is not
-  const float bounded = std::clamp(x, -126.0F, 127.0F);
-  // The sum has the nearest whole number in its last bits.
-  constexpr float shift = 0x1.8p23F;
-  const float shifted = bounded + shift;
-  const float power = std::bit_cast<float>((std::bit_cast<std::uint32_t>(shifted) + 127U) << 23);
-  const float f = bounded - (shifted - shift);
-  return power * ((0.999928014F + 0.693261013F * f) + f * f * (0.242612141F + 0.0551720782F * f));
+[[nodiscard]] inline float exponent(float x) {
+  return static_cast<float>(static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(x) >> 23) - 127);
+}
+/// 2^n, where n is in the last bits of a sum of n and 1.5 * 2^23.
+[[nodiscard]] inline float power_of_two(float sum) {
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(sum) + 127U) << 23);
+}
+
+/// log2 of a positive finite number and 2^x, to 0.001: a step size needs no more, and the functions of the library
+/// would take the longest time between one small step and the next. The cubics have the smallest maximum error among
+/// those without a jump from one power of two to the next, and are summed in pairs of terms, which shortens the chain
+/// of operations. Real is float, or lanes of it.
+template <class Real>
+[[nodiscard]] inline Real quick_log2(const Real& x) {
+  const Real m = significand(x);
+  const Real below = exponent(x) - Real(2.16416994F);
+  return (below + Real(3.06469457F) * m) + m * m * (Real(0.159219831F) * m - Real(1.05974446F));
+}
+template <class Real>
+[[nodiscard]] inline Real quick_exp2(const Real& x) {  // for x in -126..127, bounded where it is not
+  using std::max, std::min;
+  const Real bounded = min(max(x, Real(-126.0F)), Real(127.0F));
+  const Real shift(0x1.8p23F);
+  const Real shifted = bounded + shift;
+  const Real f = bounded - (shifted - shift);
+  return power_of_two(shifted) *
+         ((Real(0.999928014F) + Real(0.693261013F) * f) + f * f * (Real(0.242612141F) + Real(0.0551720782F) * f));
 }
 
 }  // namespace detail
 
 /// The memory of a controller: the logarithms of the last two squared errors. A jump of the state clears it. Errors are
-/// given as squares, which the mean of squares provides: the next step would have to wait for the root.
-struct ErrorHistory {
-  float last = 0, before_last = 0;
+/// given as squares, which the mean of squares provides: the next step would have to wait for the root. Real is float,
+/// or lanes of it.
+template <class Real>
+struct ErrorHistoryOf {
+  Real last = Real(0), before_last = Real(0);
 
   /// For checkpoints.
   template <class Archive>
@@ -67,18 +82,20 @@ struct ErrorHistory {
   }
 
   /// The factor for the next step after an accepted one; the error is kept for the steps after.
-  [[nodiscard]] float accept(const Controller& controller, int error_order, float error_square) {
-    const float exponent = exponent_of(error_order);
-    const float here = detail::quick_log2(std::max(error_square, 1e-20F));
-    const float older =
-        static_cast<float>(controller.beta2) * last + static_cast<float>(controller.beta3) * before_last;
+  [[nodiscard]] Real accept(const Controller& controller, int error_order, const Real& error_square) {
+    using std::max, std::min;
+    const float order = exponent_of(error_order);
+    const Real here = detail::quick_log2(max(error_square, Real(1e-20F)));
+    const Real older =
+        Real(static_cast<float>(controller.beta2)) * last + Real(static_cast<float>(controller.beta3)) * before_last;
     before_last = last;
     last = here;
     // All other terms are known before `here`, for which the next step waits.
-    const float factor = static_cast<float>(controller.safety) *
-                         detail::quick_exp2(-exponent * older - exponent * static_cast<float>(controller.beta1) * here);
-    return std::clamp(factor, static_cast<float>(controller.least_factor),
-                      static_cast<float>(controller.greatest_factor));
+    const Real factor =
+        Real(static_cast<float>(controller.safety)) *
+        detail::quick_exp2(Real(-order) * older - Real(order * static_cast<float>(controller.beta1)) * here);
+    return min(max(factor, Real(static_cast<float>(controller.least_factor))),
+               Real(static_cast<float>(controller.greatest_factor)));
   }
 
   /// The factor for another try of a rejected step.
@@ -91,5 +108,6 @@ struct ErrorHistory {
  private:
   [[nodiscard]] static float exponent_of(int error_order) { return 0.5F / static_cast<float>(error_order + 1); }
 };
+using ErrorHistory = ErrorHistoryOf<float>;
 
 }  // namespace continuo
