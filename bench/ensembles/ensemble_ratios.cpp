@@ -1,6 +1,6 @@
 // Ensembles beside the same runs one by one: 10,000 Lorenz systems beside Boost.odeint's runge_kutta_fehlberg78 and our
-// `solve`, a million bouncing balls beside `solve`, and steps of RK4 of a fixed size beside the operations per second
-// that the core can do. Processor time, of one thread but for the last line.
+// `solve`, bubbles and valves beside Boost.odeint, a million bouncing balls beside `solve`, and steps of RK4 of a fixed
+// size beside the operations per second that the core can do. Processor time, of one thread but for the last line.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <bench/ensembles/hard_problems.hpp>
 #include <bench/processor_time.hpp>
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
@@ -29,14 +30,16 @@ using Two = std::array<double, 2>;
 using Three = std::array<double, 3>;
 using One = std::array<double, 1>;
 
-/// The processor time of one call, the shortest of three.
+/// The processor time of one call, the shortest of those that fit into three seconds, of two at least.
 template <class F>
 double seconds(F&& f) {
-  double best = HUGE_VAL;
-  for (int i = 0; i < 3; ++i) {
+  double best = HUGE_VAL, spent = 0;
+  for (int i = 0; i < 2 || spent < 3; ++i) {
     const double begin = bench::processor_seconds();
     f();
-    best = std::min(best, bench::processor_seconds() - begin);
+    const double time = bench::processor_seconds() - begin;
+    best = std::min(best, time);
+    spent += time;
   }
   return best;
 }
@@ -66,10 +69,10 @@ std::vector<Three> lorenz_one_by_one(double tolerance) {
   return ends;
 }
 template <class M>
-std::vector<Three> lorenz_together(double tolerance, int threads) {
+std::vector<Three> lorenz_together(double tolerance, int threads, double atol = 0) {
   const auto result =
       ensemble(lorenz, starts(lorenz_runs, [](std::size_t run) { return RunStart{Three{1, 0, 0}, rho(run)}; }),
-               {0, lorenz_end}, M{}, {.rtol = tolerance, .atol = tolerance, .threads = threads});
+               {0, lorenz_end}, M{}, {.rtol = tolerance, .atol = atol > 0 ? atol : tolerance, .threads = threads});
   std::vector<Three> ends;
   for (const auto& run : result.runs) ends.push_back(run.x);
   return ends;
@@ -113,6 +116,9 @@ void compare_lorenz() {
   ours(Dop853{}, 1e-8);
   ours(Verner9{}, 2e-6);  // about the error of odeint
   ours(Verner9{}, 3e-8);
+  // Near the origin, where a small error decides on which side a trajectory goes on, the state is small.
+  const double together = seconds([&] { ends = lorenz_together<Verner9>(5e-8, 1, 5e-9); });
+  report("ensemble, verner9, atol 5e-9", 5e-8, together, odeint);
 }
 
 // ---- bouncing balls
@@ -213,6 +219,8 @@ void compare_threads() {
 int main() {
   std::printf("lanes: %zu, register: %zu numbers\n", default_lanes, xsimd::batch<double>::size);
   compare_lorenz();
+  bench::compare_bubbles();
+  bench::compare_valves();
   compare_balls();
   compare_fixed_steps();
   compare_threads();
