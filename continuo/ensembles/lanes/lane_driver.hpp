@@ -313,6 +313,13 @@ class LaneDriver {
   }
 
   void interpolate() {
+    if constexpr (is_small) {
+      flat_interpolate();
+    } else {
+      static_cast<void>(M::interpolate(system_, sizes_.t(), x_, sizes_.h(), x_new_, work_, polynomial_));
+    }
+  }
+  [[gnu::flatten]] void flat_interpolate() {
     static_cast<void>(M::interpolate(system_, sizes_.t(), x_, sizes_.h(), x_new_, work_, polynomial_));
   }
 
