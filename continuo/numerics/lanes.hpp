@@ -194,7 +194,11 @@ class Lanes {
   // every lane of every width. xsimd's would choose their way by all the numbers of a register.
   template <auto OfRegister, class F, class... A>
   [[nodiscard]] static Lanes function(F one, const A&... a) {
-    if constexpr (std::same_as<Real, double> && detail::has_vector_functions) {
+    if constexpr (std::same_as<Real, double> && detail::has_vector_functions &&
+                  sizeof(Part) == sizeof(detail::NumbersOfRegister)) {
+      using Register = detail::NumbersOfRegister;
+      return map([](const auto&... x) { return std::bit_cast<Part>(OfRegister(std::bit_cast<Register>(x)...)); }, a...);
+    } else if constexpr (std::same_as<Real, double> && detail::has_vector_functions) {
       constexpr std::size_t at_once = detail::vector_width;
       std::array<Real, W> result;
       for (std::size_t first = 0; first < W; first += at_once) {
