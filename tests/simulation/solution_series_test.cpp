@@ -49,9 +49,13 @@ std::vector<Referee> slow_series(const ModelProgram& program, double t, const st
 
 std::vector<std::vector<double>> series_of(SolutionSeries& series, double t, const std::vector<double>& x,
                                            std::span<const std::size_t> held = {}) {
-  std::vector<std::vector<double>> c(order + 1, x);
+  std::vector<double> c((order + 1) * x.size());
+  std::ranges::copy(x, c.begin());
   series.expand(t, 1, c, held);
-  return c;
+  std::vector<std::vector<double>> rows;
+  for (auto row = c.begin(); row != c.end(); row += static_cast<std::ptrdiff_t>(x.size()))
+    rows.emplace_back(row, row + static_cast<std::ptrdiff_t>(x.size()));
+  return rows;
 }
 
 /// Rounding counts as a part of the greatest coefficient: terms of that size cancel in others.
@@ -189,10 +193,10 @@ TEST(SolutionSeries, FollowsSwitches) {
   ModelSystem system(program, start_values(program->model));
   for (const double x : {1.0, -1.0}) {
     system.hold_switches(0, {x, 0});
-    std::vector<std::vector<double>> c(4, {x, 0});
+    std::vector<double> c{x, 0, 0, 0, 0, 0, 0, 0};
     EXPECT_EQ(system.taylor_coefficients(0, 1, c), "");
-    EXPECT_EQ(c[1][1], -x);
-    EXPECT_EQ(c[2][0], -x / 2);
+    EXPECT_EQ(c[3], -x);
+    EXPECT_EQ(c[4], -x / 2);
     EXPECT_FALSE(system.has_corners());
   }
 }
@@ -214,16 +218,16 @@ void expect_same_bits(const Model& model, const std::shared_ptr<NativeCompiler>&
   std::copy_n(start.begin() + interpreted->model.layout.states, x.size(), x.begin());
   const std::size_t functions = native->report().compiled;
   for (int place = 0; place < 3; ++place) {
-    std::vector<std::vector<double>> a(highest + 1, x), b(highest + 1, x);
+    std::vector<double> a((highest + 1) * x.size()), b = a;
+    std::ranges::copy(x, a.begin());
+    std::ranges::copy(x, b.begin());
     expected.expand(0.3 * place, 0.1, a);
     found.expand(0.3 * place, 0.1, b);
-    for (std::size_t k = 0; k <= highest; ++k) {
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        if (std::isnan(a[k][i]) && std::isnan(b[k][i])) continue;
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(b[k][i]), std::bit_cast<std::uint64_t>(a[k][i]))
-            << b[k][i] << ", not " << a[k][i] << ", of " << model.states[i].column << ", order " << k << " of "
-            << highest;
-      }
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      if (std::isnan(a[n]) && std::isnan(b[n])) continue;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(b[n]), std::bit_cast<std::uint64_t>(a[n]))
+          << b[n] << ", not " << a[n] << ", of " << model.states[n % x.size()].column << ", order " << n / x.size()
+          << " of " << highest;
     }
     for (double& value : x) value += 0.1 * normal(random) * (1 + std::abs(value));
   }
@@ -285,7 +289,9 @@ TEST(NativeSeries, TakesOverDuringARunAndIsShared) {
   const auto program = compile(std::move(model));
   const std::vector<double> start = start_values(program->model);
   SolutionSeries one(*program, program->model.modes[0].derivatives, start);
-  std::vector<std::vector<double>> first(18, {1, 0}), now = first;
+  std::vector<double> first(36), now;
+  first[0] = 1;
+  now = first;
   one.expand(0, 1, first);
   for (int i = 0; i < 2'000'000 && native->report().compiled == 0; ++i) one.expand(0, 1, now);
   ASSERT_EQ(native->report().compiled, 1U) << native->report().trouble;

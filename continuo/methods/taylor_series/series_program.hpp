@@ -220,11 +220,12 @@ class SeriesProgram {
     const Weight& weight;
   };
   /// Some members at once. Even and odd terms apart: one addition does not wait for the other. The first and the last
-  /// term come last: they have the coefficients of order k, which were computed just now.
+  /// term come last: they have the coefficients of order k, which were computed just now. -0 is what changes no sum.
   template <std::uint32_t piece, class Terms, class Finish>
   [[gnu::always_inline]] void set_piece(const Operation& o, std::size_t k, const Terms& terms, std::uint32_t begin,
                                         Finish&& finish) {
-    Real even[piece] = {}, odd[piece] = {};
+    Real even[piece], odd[piece];
+    for (std::uint32_t i = 0; i < piece; ++i) even[i] = odd[i] = -Real(0);
     const auto add = [&](Real* sum, std::size_t j) __attribute__((always_inline)) {
       const Real weight = terms.weight(j);
       const Real *const u = terms.a + begin + j * row_size_, *const v = terms.b + begin - j * row_size_;
@@ -300,11 +301,13 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return even ? 2 * sum + m[i] * m[i] : 2 * sum;
     };
   };
-  const auto by_order = [&](std::uint32_t, const Real& sum) { return sum / order; };
+  // Divisors are known before the sums, which wait for the order before: their inverses are computed by then.
+  const Real inverse_order = Real(1) / order;
+  const auto by_order = [&](std::uint32_t, const Real& sum) { return sum * inverse_order; };
   // r' = slope a' / u: what is left of a_k when the products of known coefficients are taken away.
   const auto by_slope = [&](Register slope, const Real& sign) __attribute__((always_inline)) {
     return sums(weighted, o, o.result, slope, 1, k - 1, [&, u = row(0) + slope](std::uint32_t i, const Real& sum) {
-      return (sign * a[i] - sum / order) / u[i];
+      return (sign * a[i] - sum * inverse_order) * (Real(1) / u[i]);
     });
   };
   Operation second = o;
@@ -320,19 +323,26 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return all([&](std::uint32_t i) { return -a[i]; });
     case SeriesCode::scale:
       return all([&, factor = row(0) + o.a](std::uint32_t i) { return factor[i] * b[i]; });
-    case SeriesCode::divide_by_number:
-      return all([&, divisor = row(0) + o.b](std::uint32_t i) { return a[i] / divisor[i]; });
+    case SeriesCode::divide_by_number: {
+      const Real* const divisor = row(0) + o.b;
+      if (k == 0) return all([&](std::uint32_t i) { return a[i] / divisor[i]; });
+      return all([&](std::uint32_t i) { return a[i] * (Real(1) / divisor[i]); });
+    }
     case SeriesCode::product:
       return sums(plain, o, o.a, o.b, 0, k, just);
     case SeriesCode::square: {
       if (k == 0) return all([&](std::uint32_t i) { return a[i] * a[i]; });
-      return sums(plain, o, o.a, o.a, 0, (k - 1) / 2, both_halves(o.a));
+      // The term with the coefficient of order k, which was computed just now, comes last.
+      return sums(plain, o, o.a, o.a, 1, (k - 1) / 2,
+                  [&, first = row(0) + o.a, others = both_halves(o.a)](std::uint32_t i, const Real& sum) {
+                    return others(i, sum) + 2 * first[i] * a[i];
+                  });
     }
     case SeriesCode::quotient: {
       const Real* const divisor = row(0) + o.b;
       if (k == 0) return all([&](std::uint32_t i) { return a[i] / divisor[i]; });
       return sums(plain, o, o.b, o.result, 1, k,
-                  [&](std::uint32_t i, const Real& sum) { return (a[i] - sum) / divisor[i]; });
+                  [&](std::uint32_t i, const Real& sum) { return (a[i] - sum) * (Real(1) / divisor[i]); });
     }
     default:
       if (k == 0 || o.code >= SeriesCode::arc_tangent2) return false;
@@ -342,7 +352,8 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return sums(plain, o, o.result, o.result, 1, (k - 1) / 2,
                   [&, square = both_halves(o.result)](std::uint32_t i, const Real& sum) {
                     const Real rest = a[i] - square(i, sum);
-                    return r[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, Real(0.5)) : rest / (2 * r[i]);
+                    return r[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, Real(0.5))
+                                           : rest * (Real(0.5) / r[i]);
                   });
     }
     case SeriesCode::exponential:
@@ -359,7 +370,8 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       const Real p = row(0)[o.b];
       const auto weight = [&](std::size_t j) { return (p + Real(1)) * Real(static_cast<double>(j)) - order; };
       return sums(weight, o, o.a, o.result, 1, k, [&](std::uint32_t i, const Real& sum) {
-        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p) : sum / (order * base[i]);
+        return base[i] == Real(0) ? power_at_zero(k, o.a + i, o.result + i, p)
+                                  : sum * (inverse_order * (Real(1) / base[i]));
       });
     }
     case SeriesCode::sine_cosine:
@@ -367,7 +379,7 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       const Real sign(o.code == SeriesCode::sine_cosine ? -1 : 1);
       sums(weighted, o, o.a, second.result, 1, k, by_order);
       return sums(weighted, second, o.a, o.result, 1, k,
-                  [&](std::uint32_t, const Real& sum) { return sign * sum / order; });
+                  [&](std::uint32_t, const Real& sum) { return sign * sum * inverse_order; });
     }
     case SeriesCode::tangent:
     case SeriesCode::hyperbolic_tangent: {  // r' = u a' with u = 1 + sign r^2
@@ -556,19 +568,20 @@ void SeriesProgram<Real>::step_functions(const Operation& o) {
   }
 }
 
-/// The coefficients of the solution of x' = f(t, x), from those of order 0 in c[0] on: c[k] of x(t + scale s). Of the
-/// program's registers the first is the time and the next are the components of x; `derivatives` are those of f.
-template <class Real, class X>
+/// The coefficients of the solution of x' = f(t, x): c[k n + i] of component i of x(t + scale s), of n components,
+/// those of order 0 being there. Of the program's registers the first is the time and the next are the components of x;
+/// `derivatives` are those of f.
+template <class Real>
 void expand_solution(SeriesProgram<Real>& program, std::span<const std::uint32_t> derivatives, const Real& t,
-                     const Real& scale, std::span<X> c) {
-  const std::size_t order = c.size() - 1, n = derivatives.size();
+                     const Real& scale, std::span<Real> c) {
+  const std::size_t n = derivatives.size(), order = c.size() / n - 1;
   program.begin(order);
   for (std::size_t k = 0; k < order; ++k) {
     program.coefficient(k, 0) = k == 0 ? t : k == 1 ? scale : Real(0);
-    for (std::uint32_t i = 0; i < n; ++i) program.coefficient(k, i + 1) = c[k].data()[i];
+    for (std::uint32_t i = 0; i < n; ++i) program.coefficient(k, i + 1) = c[k * n + i];
     program.evaluate(k);
     const Real factor = scale / Real(static_cast<double>(k + 1));
-    for (std::size_t i = 0; i < n; ++i) c[k + 1].data()[i] = factor * program.coefficient(k, derivatives[i]);
+    for (std::size_t i = 0; i < n; ++i) c[(k + 1) * n + i] = factor * program.coefficient(k, derivatives[i]);
   }
 }
 

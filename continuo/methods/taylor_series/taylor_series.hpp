@@ -7,9 +7,9 @@
 //
 // |c_j| in tolerances: their steps, and one order more. A series of radius of convergence r has c_j ~ r^-j; then h is
 // r/e^2, and what is cut off is the tolerance times e^-6. With their order, errors after a long run are ten times those
-// of other methods at the same tolerance. The coefficients at the end of a step, which the next one begins with, are
-// computed at once: they give the size of the next step, and c_1 there is f, by which the defect of the polynomial at
-// its end is known. Where f may have jumps or corners, or depends on time, the defect is measured within the step as
+// of other methods at the same tolerance. The coefficients at the end of a step, which the next one begins with,
+// are computed at once: they give the size of the next step, and c_1 there is f, by which the defect of the polynomial
+// at its end is known. Where f may have jumps or corners, or depends on time, the defect is measured within the step as
 // well.
 #pragma once
 #include <algorithm>
@@ -24,17 +24,17 @@
 
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
-#include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/methods/support/weighted_norm.hpp>  // the greater one
 #include <continuo/methods/taylor_series/series_number.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/system/rebound_state.hpp>
 
 namespace continuo {
 
-/// The system gives the series of its solution itself: c[k] becomes the coefficient of s^k of x(t + scale s), c[0]
-/// being there. Returns why it has none, a sentence; empty where it has.
+/// The system gives the series of its solution itself: of n components, c[k n + i] becomes the coefficient of s^k of
+/// component i of x(t + scale s), those of s^0 being there. Returns why it has none, a sentence; empty where it has.
 template <class F, class X>
-concept HasTaylorCoefficients = requires(F& f, const Scalar<X>& t, const Scalar<X>& scale, std::span<X> c) {
+concept HasTaylorCoefficients = requires(F& f, const Scalar<X>& t, const Scalar<X>& scale, std::span<Scalar<X>> c) {
   { f.taylor_coefficients(t, scale, c) } -> std::convertible_to<std::string_view>;
 };
 /// The system says whether it has jumps or corners between the events of a run.
@@ -68,14 +68,14 @@ struct TaylorSeries {
   /// No coefficients can be had of every system.
   static constexpr bool needs_series = true;
 
-  /// The series at one instant, in units of a time `scale`.
+  /// The series at one instant, in units of a time `scale`: the coefficients of s^0, then those of s^1, ...
   template <State X>
   struct Expansion {
-    std::array<X, dense_degree + 1> c;
+    std::vector<Scalar<X>> c;
     Scalar<X> scale{};
     bool is_known = false;
 
-    explicit Expansion(const X& x) { c.fill(x); }
+    explicit Expansion(const X& x) : c((dense_degree + 1) * dimension(x)) {}
     template <class Archive>
     void transfer(Archive& archive) {
       archive(c, scale, is_known);
@@ -85,10 +85,11 @@ struct TaylorSeries {
   template <State X>
   struct Workspace {
     using Real = Scalar<X>;
-    Expansion<X> now, next;  // at the start of the step, and at its end
+    std::array<Expansion<X>, 2> expansions;  // at the start of the step and at its end, in turn
+    bool begins_with_second = false;
     X rest, next_rest;       // what rounding has taken from x, and will have taken from x_new
     X defect, point, slope;  // f less the slope of the polynomial, times h/(p + 1); scratch
-    X polynomial_slope;      // where the polynomial was evaluated last
+    X polynomial_slope;      // where the polynomial was evaluated last, by `scale`
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
     std::size_t order = 0;        // p; 0: not chosen
     bool is_retaken = false;      // the step begins where the last try did
@@ -101,8 +102,7 @@ struct TaylorSeries {
     std::vector<std::uint32_t> derivatives;  // their registers
 
     explicit Workspace(const X& x)
-        : now(x),
-          next(x),
+        : expansions{Expansion<X>(x), Expansion<X>(x)},
           rest(x),
           next_rest(x),
           defect(x),
@@ -116,10 +116,15 @@ struct TaylorSeries {
       }
     }
 
+    [[nodiscard]] Expansion<X>& now() { return expansions[begins_with_second ? 1 : 0]; }
+    [[nodiscard]] const Expansion<X>& now() const { return expansions[begins_with_second ? 1 : 0]; }
+    [[nodiscard]] Expansion<X>& next() { return expansions[begins_with_second ? 0 : 1]; }
+    [[nodiscard]] const Expansion<X>& next() const { return expansions[begins_with_second ? 0 : 1]; }
+
     /// For checkpoints: what the next step depends on.
     template <class Archive>
     void transfer(Archive& archive) {
-      archive(now, next, rest, next_rest, slope);
+      archive(now(), next(), rest, next_rest);
       archive.index(order, dense_degree);
       archive(is_controlled, is_fixed);
     }
@@ -155,14 +160,13 @@ struct TaylorSeries {
     int evaluations = 0;
     const bool is_retaken = std::exchange(work.is_retaken, false);
     if (discontinuity && !is_retaken) {
-      work.now.is_known = work.is_fixed = work.is_controlled = false;
+      work.now().is_known = work.is_fixed = work.is_controlled = false;
       std::fill_n(work.rest.data(), dimension(x), Real(0));
     }
-    work.next.is_known = false;
-    if (!work.now.is_known) {
+    work.next().is_known = false;
+    if (!work.now().is_known) {
       work.order = order_of_step(work);
-      work.now.c[0] = x;
-      evaluations += expand(system, t, h, work, work.now);
+      evaluations += expand(system, t, x, h, work, work.now());
       if (work.failure.empty() && !has_series(work)) {
         work.failure =
             "the solution has no Taylor series at this time, as where a root or a power with a fraction begins at 0: "
@@ -174,16 +178,14 @@ struct TaylorSeries {
     if (is_retaken) return evaluations;
     std::fill_n(work.defect.data(), dimension(x), Real(0));
     if (!detail::is_finite_state(x_new)) return evaluations;
-    work.next.c[0] = x_new;
-    evaluations += expand(system, Real(t + h), h, work, work.next);
+    evaluations += expand(system, Real(t + h), x_new, h, work, work.next());
     if (!work.failure.empty()) return evaluations;
-    for (std::size_t i = 0; i < dimension(x); ++i) work.slope.data()[i] = work.next.c[1].data()[i] / work.next.scale;
-    note_defect(h, work);
+    note_defect(h, work, first_coefficients<X>(work.next()), Real(Real(1) / work.next().scale));
     if (may_have_corners<X>(system)) {
       for (const double theta : within) {
         at(Real(theta), h, work, work.point);
         evaluate(system, Real(t + Real(theta) * h), work.point, work.slope);
-        note_defect(h, work);
+        note_defect(h, work, work.slope.data(), Real(1));
         ++evaluations;
       }
     }
@@ -193,11 +195,21 @@ struct TaylorSeries {
   template <State X>
   [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                                             const Tolerance<Scalar<X>>& tolerance) {
+    using std::sqrt;
+    return sqrt(error_square(work, h, x, x_new, tolerance));
+  }
+  /// Its square; not a number where x_new is not finite.
+  template <State X>
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     const std::array factors = last_factors(work, h);
-    return detail::zero_if_all_finite(x_new) + root_mean_square<Scalar<X>>(dimension(x), [&](std::size_t i) {
-             const Scalar<X> scale = tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
-             return Scalar<X>(error_of(work, factors, i) / scale);
-           });
+    const std::size_t n = dimension(x);
+    Scalar<X> sum = detail::zero_if_all_finite(x_new);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Scalar<X> part = error_of(work, factors, i) / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
+      sum += part * part;
+    }
+    return sum / number<Scalar<X>>(n);
   }
   /// The greatest of the defect, and of the last two terms times what `allowance` says.
   template <State X>
@@ -210,26 +222,41 @@ struct TaylorSeries {
   [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X&,
                                              const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
-    using std::abs, std::exp, std::min, std::pow;
+    using std::abs, std::min;
     work.is_controlled = true;
-    if (!work.next.is_known) return factor;
-    Real longest = Real(greatest_factor) * abs(h);
-    for (std::size_t j = work.order - 1; j <= work.order; ++j) {
-      const Real norm = allowance<Real>(work.order, j) * weighted_norm(work.next.c[j], x_new, x_new, tolerance);
-      if (norm > Real(0)) longest = min(longest, Real(abs(work.next.scale) * pow(norm, -Real(1) / number<Real>(j))));
+    const Expansion<X>& next = work.next();
+    if (!next.is_known) return factor;
+    const std::size_t n = dimension(x_new), p = work.order;
+    const Real *const before = next.c.data() + (p - 1) * n, *const last = before + n;
+    std::array<Real, 2> squares{};  // of the norms of the last two coefficients
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real weight = Real(1) / tolerance.scale(i, x_new.data()[i], x_new.data()[i]);
+      const std::array<Real, 2> parts{Real(before[i] * weight), Real(last[i] * weight)};
+      for (std::size_t j = 0; j < 2; ++j) squares[j] += parts[j] * parts[j];
     }
-    return longest / abs(h) * exp(Real(-0.7) / number<Real>(work.order - 1));
+    Real longest = Real(greatest_factor) * abs(h);
+    for (std::size_t j = 0; j < 2; ++j) {
+      const Real allowed = allowance<Real>(p, p - 1 + j), square = squares[j] * (allowed * allowed) / number<Real>(n);
+      if (square > Real(0)) longest = min(longest, Real(abs(next.scale) * inverse_root(square, 2 * (p - 1 + j))));
+    }
+    return longest / abs(h) * safety<Real>(p);
   }
 
   template <class System, State X>
   static int interpolate(System&, const Scalar<X>&, const X&, const Scalar<X>& h, const X& x_new, Workspace<X>& work,
                          Interpolant<X, dense_degree>& interpolant) {
     using Real = Scalar<X>;
-    const Real theta = h / work.now.scale;
+    const Real theta = h / work.now().scale;
+    const std::size_t n = dimension(x_new);
+    const Real* c = work.now().c.data();
     Real factor(1);
-    for (std::size_t k = 0; k < interpolant.c.size(); ++k, factor *= theta) {
-      for (std::size_t i = 0; i < dimension(x_new); ++i)
-        interpolant.c[k].data()[i] = k <= work.order ? Real(factor * work.now.c[k].data()[i]) : Real(0);
+    for (std::size_t k = 0; k < interpolant.c.size(); ++k, factor *= theta, c += n) {
+      Real* const to = interpolant.c[k].data();
+      if (k <= work.order) {
+        for (std::size_t i = 0; i < n; ++i) to[i] = factor * c[i];
+      } else {
+        std::fill_n(to, n, Real(0));
+      }
     }
     return 0;
   }
@@ -238,23 +265,21 @@ struct TaylorSeries {
   static void accept(Workspace<X>& work) {
     if (!std::exchange(work.is_controlled, false)) {
       work.is_fixed = true;
-      work.next.is_known = work.next.is_known && work.order == order_of_step(work);
+      work.next().is_known = work.next().is_known && work.order == order_of_step(work);
     }
-    std::swap(work.now, work.next);
+    work.begins_with_second = !work.begins_with_second;
     std::swap(work.rest, work.next_rest);
-    work.next.is_known = false;
-    for (std::size_t i = 0; i < dimension(work.slope); ++i)
-      work.slope.data()[i] = work.now.c[1].data()[i] / work.now.scale;
+    work.next().is_known = false;
   }
   /// The next step begins elsewhere.
   template <State X>
   static void moved(Workspace<X>& work, const X&, const X&) {
-    work.now.is_known = false;
+    work.now().is_known = false;
     std::fill_n(work.rest.data(), dimension(work.rest), Scalar<X>(0));
   }
   template <State X>
   static void retaken(Workspace<X>& work) {
-    work.is_retaken = work.now.is_known;
+    work.is_retaken = work.now().is_known;
   }
   template <State X>
   [[nodiscard]] static StepStatus status(const Workspace<X>& work) {
@@ -265,8 +290,11 @@ struct TaylorSeries {
     return work.failure;
   }
   template <State X>
-  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
-    return work.slope;
+  [[nodiscard]] static X derivative(const Workspace<X>& work) {
+    X slope = work.rest;
+    for (std::size_t i = 0; i < dimension(slope); ++i)
+      slope.data()[i] = first_coefficients<X>(work.now())[i] / work.now().scale;
+    return slope;
   }
 
  private:
@@ -279,17 +307,44 @@ struct TaylorSeries {
     return Real(static_cast<double>(k));
   }
   template <class Real>
-  [[nodiscard]] static Real power(const Real& x, std::size_t n) {
+  [[nodiscard]] static Real power(Real x, std::size_t n) {
     Real result(1);
-    for (std::size_t k = 0; k < n; ++k) result *= x;
+    for (; n > 0; n /= 2, x *= x)
+      if (n % 2 == 1) result *= x;
     return result;
+  }
+  /// x^(-1/n). A step size needs no more than the digits of a float, which come sooner.
+  template <class Real>
+  [[nodiscard]] static Real inverse_root(const Real& x, std::size_t n) {
+    using std::pow;
+    if constexpr (std::is_same_v<Real, double>) {
+      if (x > 1e-37 && x < 1e37)
+        return static_cast<double>(std::exp2(std::log2(static_cast<float>(x)) / -static_cast<float>(n)));
+    }
+    return pow(x, -Real(1) / number<Real>(n));
+  }
+  /// e^(-0.7/(p - 1))
+  template <class Real>
+  [[nodiscard]] static Real safety(std::size_t p) {
+    using std::exp;
+    static const auto all = [] {
+      std::array<Real, dense_degree + 1> result{};
+      for (std::size_t k = 2; k < result.size(); ++k) result[k] = exp(Real(-0.7) / number<Real>(k - 1));
+      return result;
+    }();
+    return all[p];
+  }
+  /// c_1
+  template <State X>
+  [[nodiscard]] static const Scalar<X>* first_coefficients(const Expansion<X>& expansion) {
+    return expansion.c.data() + expansion.c.size() / (dense_degree + 1);
   }
   /// What coefficients p - 1 and p are multiplied by, for their terms in units of a tolerance.
   template <State X>
   [[nodiscard]] static std::array<Scalar<X>, 2> last_factors(const Workspace<X>& work, const Scalar<X>& h) {
     using std::abs;
     using Real = Scalar<X>;
-    const Real theta = abs(h / work.now.scale), before = power(theta, work.order - 1);
+    const Real theta = abs(h / work.now().scale), before = power(theta, work.order - 1);
     return {before * allowance<Real>(work.order, work.order - 1),
             before * theta * allowance<Real>(work.order, work.order)};
   }
@@ -298,10 +353,10 @@ struct TaylorSeries {
                                           std::size_t i) {
     using std::abs;
     using Real = Scalar<X>;
-    Real greatest = work.defect.data()[i];
-    for (std::size_t n = 0; n < 2; ++n)
-      greatest = detail::greater(greatest, Real(abs(work.now.c[work.order - 1 + n].data()[i]) * factors[n]));
-    return greatest;
+    const std::size_t n = dimension(work.rest);
+    const Real* const c = work.now().c.data() + (work.order - 1) * n + i;
+    const Real last = detail::greater(Real(abs(c[0]) * factors[0]), Real(abs(c[n]) * factors[1]));
+    return detail::greater(last, work.defect.data()[i]);
   }
   /// In what units of a tolerance term j is measured: the last one is to be e^-4 tolerances, that before it e^-2.
   template <class Real>
@@ -332,27 +387,32 @@ struct TaylorSeries {
   /// False where f is finite, and a derivative of it is not.
   template <State X>
   [[nodiscard]] static bool has_series(const Workspace<X>& work) {
-    for (std::size_t k = 2; k <= work.order; ++k)
-      if (!detail::is_finite_state(work.now.c[k])) return !detail::is_finite_state(work.now.c[1]);
-    return true;
+    const std::size_t n = dimension(work.rest);
+    const auto are_finite = [&](std::size_t begin, std::size_t end) {
+      return std::ranges::all_of(std::span(work.now().c).subspan(begin * n, (end - begin) * n),
+                                 [](const Scalar<X>& c) { return detail::is_finite(c); });
+    };
+    return are_finite(2, work.order + 1) || !are_finite(1, 2);
   }
 
-  /// The coefficients from c[0] on.
+  /// The coefficients at (t, x).
   template <class System, State X>
-  static int expand(System& system, const Scalar<X>& t, const Scalar<X>& scale, Workspace<X>& work,
+  static int expand(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& scale, Workspace<X>& work,
                     Expansion<X>& expansion) {
     expansion.scale = scale;
     expansion.is_known = true;
     work.failure = {};
+    const std::size_t n = dimension(x);
+    std::copy_n(x.data(), n, expansion.c.data());
+    const auto c = std::span(expansion.c).first((work.order + 1) * n);
     if constexpr (HasTaylorCoefficients<System, X>) {
-      work.failure = system.taylor_coefficients(t, scale, std::span<X>(expansion.c).first(work.order + 1));
+      work.failure = system.taylor_coefficients(t, scale, c);
       expansion.is_known = work.failure.empty();
     } else if constexpr (detail::takes_series<System, X>()) {
-      record(system, t, work, expansion.c[0]);
-      expand_solution<Scalar<X>, X>(work.program, work.derivatives, t, scale,
-                                    std::span<X>(expansion.c).first(work.order + 1));
+      record(system, t, work, x);
+      expand_solution<Scalar<X>>(work.program, work.derivatives, t, scale, c);
     } else {
-      work.failure = unsupported_reason(system, expansion.c[0]);
+      work.failure = unsupported_reason(system, x);
       expansion.is_known = false;
     }
     return static_cast<int>(work.order);
@@ -377,8 +437,16 @@ struct TaylorSeries {
     const std::size_t n = dimension(work.rest);
     std::size_t i = 0;
     for (; i + 4 <= n; i += 4) sums_of<4>(work, theta, use, i);
-    if (i + 2 <= n) sums_of<2>(work, theta, use, i), i += 2;
-    if (i < n) sums_of<1>(work, theta, use, i);
+    switch (n - i) {
+      case 3:
+        return sums_of<3>(work, theta, use, i);
+      case 2:
+        return sums_of<2>(work, theta, use, i);
+      case 1:
+        return sums_of<1>(work, theta, use, i);
+      default:
+        return;
+    }
   }
   template <std::size_t count, State X, class Use>
   static void sums_of(const Workspace<X>& work, const Scalar<X>& theta, Use&& use, std::size_t begin) {
@@ -393,15 +461,16 @@ struct TaylorSeries {
       }
     } odd, even;
     const Real square = theta * theta;
+    const std::size_t n = dimension(work.rest);
+    const Real *const first = work.now().c.data() + n + begin, *c = first + (work.order - 1) * n;
     std::size_t k = work.order;
-    if (k % 2 == 1) odd.next(square, work.now.c[k].data() + begin, number<Real>(k)), --k;
-    for (; k > 2; k -= 2) {
-      even.next(square, work.now.c[k].data() + begin, number<Real>(k));
-      odd.next(square, work.now.c[k - 1].data() + begin, number<Real>(k - 1));
+    if (k % 2 == 1) odd.next(square, c, number<Real>(k)), --k, c -= n;
+    for (; k > 2; k -= 2, c -= 2 * n) {
+      even.next(square, c, number<Real>(k));
+      odd.next(square, c - n, number<Real>(k - 1));
     }
-    even.next(square, work.now.c[2].data() + begin, number<Real>(2));
+    even.next(square, c, number<Real>(2));
     // The greatest term comes last, so that it is rounded once.
-    const Real* const first = work.now.c[1].data() + begin;
     for (std::size_t i = 0; i < count; ++i) {
       use(begin + i, Real(theta * (first[i] + theta * (even.value[i] + theta * odd.value[i]))),
           Real(first[i] + theta * (even.slope[i] + theta * odd.slope[i])));
@@ -412,8 +481,8 @@ struct TaylorSeries {
   template <State X>
   static void at(const Scalar<X>& part, const Scalar<X>& h, Workspace<X>& work, X& x) {
     using Real = Scalar<X>;
-    for_sums(work, Real(part * h / work.now.scale), [&](std::size_t i, const Real& sum, const Real& slope) {
-      x.data()[i] = work.now.c[0].data()[i] + sum;
+    for_sums(work, Real(part * h / work.now().scale), [&](std::size_t i, const Real& sum, const Real& slope) {
+      x.data()[i] = work.now().c[i] + sum;
       work.polynomial_slope.data()[i] = slope;
     });
   }
@@ -422,7 +491,7 @@ struct TaylorSeries {
   template <State X>
   static void advance(const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
-    for_sums(work, Real(h / work.now.scale), [&](std::size_t i, const Real& sum, const Real& slope) {
+    for_sums(work, Real(h / work.now().scale), [&](std::size_t i, const Real& sum, const Real& slope) {
       const Real change = sum + work.rest.data()[i];
       x_new.data()[i] = x.data()[i] + change;
       work.next_rest.data()[i] = (x.data()[i] - x_new.data()[i]) + change;
@@ -432,13 +501,14 @@ struct TaylorSeries {
 
   /// The error that the defect at a part of the step stands for, where it is greater than one before: a polynomial of
   /// order p whose first term missing is c s^(p + 1) has the defect (p + 1) c s^p.
+  /// f there is `slope` times a factor.
   template <State X>
-  static void note_defect(const Scalar<X>& h, Workspace<X>& work) {
+  static void note_defect(const Scalar<X>& h, Workspace<X>& work, const Scalar<X>* slope, const Scalar<X>& of_slope) {
     using std::abs;
     using Real = Scalar<X>;
-    const Real factor = h / number<Real>(work.order + 1), by_scale = Real(1) / work.now.scale;
+    const Real factor = h / number<Real>(work.order + 1), by_scale = Real(1) / work.now().scale;
     for (std::size_t i = 0; i < dimension(work.slope); ++i) {
-      const Real error = factor * (work.slope.data()[i] - work.polynomial_slope.data()[i] * by_scale);
+      const Real error = factor * (slope[i] * of_slope - work.polynomial_slope.data()[i] * by_scale);
       work.defect.data()[i] = detail::greater(Real(abs(error)), work.defect.data()[i]);
     }
   }

@@ -170,7 +170,7 @@ void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
   for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / increment;
 }
 
-std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::span<X> c) {
+std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::span<double> c) {
   if (slides())
     return "the motion slides along a surface where the equations jump, and has no Taylor series there: take dop853";
   if (!series_ || series_mode_ != mode_) {

@@ -114,7 +114,7 @@ class ModelSystem {
   void jacobian_band(double t, const X& x, std::span<double> band);
   void time_derivative(double t, const X& x, X& dfdt);
   /// The series of the solution, x(t + scale s), from c[0] on; see HasTaylorCoefficients. The first call compiles.
-  [[nodiscard]] std::string_view taylor_coefficients(double t, double scale, std::span<X> c);
+  [[nodiscard]] std::string_view taylor_coefficients(double t, double scale, std::span<double> c);
   /// Whether a series may not show what comes within a step: the equations depend on time, or they have jumps or
   /// corners that are not switches.
   [[nodiscard]] bool has_corners() const { return !autonomous || (series_ && series_->has_corners()); }

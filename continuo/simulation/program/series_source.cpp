@@ -89,8 +89,11 @@ class SeriesWriter {
       all({false, 0});
       line("}}");
     }
-    const std::string body = "void evaluate(double *restrict w, double scale) {\n" + std::move(text_) + "}\n";
+    const std::string body =
+        "void evaluate(double *restrict w, double *restrict x, double scale) {\n" + std::move(text_) + "}\n";
     text_.clear();
+    // Sums of a few members that lie apart are not gathered into vectors: that would take longer.
+    if (is_written_out()) line("#pragma GCC optimize(\"no-tree-slp-vectorize\")");
     line("enum {{ S = {} }};", row_);
     text_ += helpers;
     for (std::uint32_t count = 1; count <= block; ++count) {
@@ -218,15 +221,18 @@ class SeriesWriter {
         derivatives_,
         [&](std::size_t begin, std::size_t count, std::uint32_t from, std::int64_t) {
           const auto to = static_cast<std::uint32_t>(begin + 1);
+          const std::string result = order.is_number ? fmt::format("x[{}", (order.k + 1) * derivatives_.size() + begin)
+                                                     : fmt::format("x[(k + 1) * {} + {}", derivatives_.size(), begin);
           const std::string next =
               order.is_number ? fmt::format("w[{}", (order.k + 1) * row_ + to) : fmt::format("c[{}", row_ + to);
           const auto uses = std::span(use_).subspan(from, count);
           if (count == 1 || std::ranges::any_of(uses, [](Use use) { return use != Use::row; })) {
             for (std::uint32_t i = 0; i < count; ++i)
-              line("{} + {}] = factor * {};", next, i, at(order, source_of(from + i), ""));
+              line("{} + {}] = {} + {}] = factor * {};", result, i, next, i, at(order, source_of(from + i), ""));
             return;
           }
-          line("for (long i = 0; i < {}; ++i) {} + i] = factor * {};", count, next, at(order, from, "i"));
+          line("for (long i = 0; i < {}; ++i) {} + i] = {} + i] = factor * {};", count, result, next,
+               at(order, from, "i"));
         },
         1);
     line("}}");
@@ -287,7 +293,10 @@ class SeriesWriter {
       case SeriesCode::scale:
         return set([&](std::string_view i) { return start(o.a, i) + " * " + b(i); });
       case SeriesCode::divide_by_number:
-        return set([&](std::string_view i) { return a(i) + " / " + start(o.b, i); });
+        return set([&](std::string_view i) {
+          const std::string divisor = start(o.b, i);
+          return a(i) + (is_first ? " / " + divisor : fmt::format(" * (1 / {})", divisor));
+        });
       case SeriesCode::minimum:
       case SeriesCode::maximum:
       case SeriesCode::absolute:
@@ -357,8 +366,8 @@ class SeriesWriter {
       const std::string second = start(o.result + o.count, i);
       const auto of = [&](std::string_view function) { line("{} = {}({});", r, function, a); };
       switch (o.code) {
-        case SeriesCode::product:  // a sum of one term
-          return line("{} = 0 + 1.0 * ({} * {});", r, a, b);
+        case SeriesCode::product:
+          return line("{} = {} * {};", r, a, b);
         case SeriesCode::square:
           return line("{} = {} * {};", r, a, a);
         case SeriesCode::quotient:
@@ -451,7 +460,7 @@ class SeriesWriter {
       if (sum.weight == "weighted") return fmt::format("{}.0 * ({})", j, product);
       return fmt::format("(({} + 1) * {}.0 - {}.0) * ({})", p, j, k, product);
     };
-    std::string even = "0.0", odd = "0.0";
+    std::string even = "-0.0", odd = "-0.0";
     for (std::size_t j = first + 1; j < last; ++j) ((j - first) % 2 == 1 ? even : odd) += " + " + term(j);
     std::string result = fmt::format("(({}) + ({}))", even, odd);
     if (first <= last) result = fmt::format("({} + {})", result, term(first));
@@ -472,7 +481,8 @@ class SeriesWriter {
     if (begin < count) pieces.push_back({"double", begin});
     line("INLINE {} {}(const double *a, const double *b, double p, long k, long first, long last{}) {{",
          count == 1 ? "double" : "void", name, count == 1 ? "" : ", double *s");
-    for (const Piece& piece : pieces) line("{} e{} = {{0}}, o{} = {{0}};", piece.type, piece.begin, piece.begin);
+    for (const Piece& piece : pieces)
+      line("{} e{} = -({}){{0}}, o{} = e{};", piece.type, piece.begin, piece.type, piece.begin, piece.begin);
     const auto add = [&](std::string_view sum, std::string_view j) {
       line("{{ const double *const u = a + ({}) * S, *const v = b + (k - ({})) * S, x = {}({}, p, k);", j, j, weight,
            j);
@@ -510,23 +520,24 @@ class SeriesWriter {
         line("{} = {};", at(order, place, i), fmt::format(fmt::runtime(form), fmt::arg("s", s)));
       };
     };
-    const std::string by_order = "{s} / " + k;
+    const std::string by_order = "{s} * (1 / " + k + ")";
     using Last = Sum::Last;
     switch (o.code) {
       case SeriesCode::product:
         return by_sum(o, order, {o.a, o.b, 0, Last::order}, result(o.result, "{s}"));
       case SeriesCode::square:
-        return by_sum(o, order, {o.a, o.a, 0, Last::half}, [&](std::string_view i, std::string_view s) {
-          line("{} = {};", at(order, o.result, i), both_halves(order, o.a, i, s));
+        return by_sum(o, order, {o.a, o.a, 1, Last::half}, [&](std::string_view i, std::string_view s) {
+          line("{} = ({}) + 2 * {} * {};", at(order, o.result, i), both_halves(order, o.a, i, s), start(o.a, i),
+               at(order, o.a, i));
         });
       case SeriesCode::quotient:
         return by_sum(o, order, {o.b, o.result, 1, Last::order}, [&](std::string_view i, std::string_view s) {
-          line("{} = ({} - {}) / {};", at(order, o.result, i), at(order, o.a, i), s, start(o.b, i));
+          line("{} = ({} - {}) * (1 / {});", at(order, o.result, i), at(order, o.a, i), s, start(o.b, i));
         });
       case SeriesCode::square_root:
         by_sum(o, order, {o.result, o.result, 1, Last::half}, [&](std::string_view i, std::string_view s) {
           line("const double rest = {} - ({});", at(order, o.a, i), both_halves(order, o.result, i, s));
-          line("{} = rest / (2 * {});", at(order, o.result, i), start(o.result, i));
+          line("{} = rest * (0.5 / {});", at(order, o.result, i), start(o.result, i));
         });
         return at_zero(o, order, o.result, "0.5");
       case SeriesCode::exponential:
@@ -540,7 +551,7 @@ class SeriesWriter {
         return by_slope(o, order, o.b, "-", k);
       case SeriesCode::power:
         by_sum(o, order, {o.a, o.result, 1, Last::order, "of_power"}, [&](std::string_view i, std::string_view s) {
-          line("{} = {} / ({} * {});", at(order, o.result, i), s, k, start(o.a, i));
+          line("{} = {} * (1 / {} * (1 / {}));", at(order, o.result, i), s, k, start(o.a, i));
         });
         return at_zero(o, order, o.a, start(o.b, ""));
       case SeriesCode::sine_cosine:
@@ -576,7 +587,8 @@ class SeriesWriter {
   void by_slope(const SeriesOperation& o, Order order, std::uint32_t slope, std::string_view sign,
                 const std::string& k) {
     by_sum(o, order, {o.result, slope, 1, Sum::Last::before, "weighted"}, [&](std::string_view i, std::string_view s) {
-      line("{} = ({}{} - {} / {}) / {};", at(order, o.result, i), sign, at(order, o.a, i), s, k, start(slope, i));
+      line("{} = ({}{} - {} * (1 / {})) * (1 / {});", at(order, o.result, i), sign, at(order, o.a, i), s, k,
+           start(slope, i));
     });
   }
   void arc_tangent2(const SeriesOperation& o, Order order, std::string_view i, const std::string& k) {

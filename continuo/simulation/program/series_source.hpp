@@ -1,7 +1,8 @@
 // The series of a solution written as C: the operations of a SeriesProgram in the same order, to the same bits.
 //
 //   const std::string text = series_source(program, derivatives, 17);
-//   // void evaluate(double *restrict w, double scale): w are the program's rows, with those of order 0 filled in
+//   // void evaluate(double *restrict w, double *restrict x, double scale): w are the program's rows, with those of
+//   // order 0 filled in; x gets the coefficients of the solution
 //
 // For one order, which is a number in the text. Of small programs every term of every sum is written out; of others the
 // sums are loops, over members in vectors. Tables are not written.
@@ -15,8 +16,9 @@
 
 namespace continuo::model {
 
-/// Machine code of `expand_solution`, from the states and the time in row 0 on.
-using NativeSeries = void (*)(double* rows, double scale);
+/// Machine code of `expand_solution`, from the states and the time in row 0 on: coefficients[k n + i] of order k from 1
+/// on.
+using NativeSeries = void (*)(double* rows, double* coefficients, double scale);
 
 /// The text of a NativeSeries named `evaluate`. Register 0 is the time, the states follow it, and `derivatives` are
 /// theirs.

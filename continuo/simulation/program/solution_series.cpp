@@ -35,7 +35,7 @@ struct SolutionSeries::Program {
   [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes) const;
   void renew();
   [[nodiscard]] NativeFunction* function_of(std::size_t order, std::span<const Register> rates);
-  void expand(double t, double scale, std::span<std::vector<double>> c, std::span<const Register> rates);
+  void expand(double t, double scale, std::span<double> c, std::span<const Register> rates);
 
   std::shared_ptr<const SeriesEquations> equations;
   std::shared_ptr<NativeCompiler> native;  // null: none
@@ -524,7 +524,7 @@ void SolutionSeries::Program::renew() {
 
 /// What the text of the function is made of, as bytes.
 std::string key_of(const SeriesProgram<double>& series, std::span<const Register> rates, std::size_t order) {
-  std::string key = "series";
+  std::string key = "series 3";
   const auto append = [&](const auto& list) {
     for (const auto part : list) key.append(reinterpret_cast<const char*>(&part), sizeof part);
   };
@@ -548,25 +548,19 @@ NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::spa
   return function.get();
 }
 
-void SolutionSeries::Program::expand(double t, double scale, std::span<std::vector<double>> c,
-                                     std::span<const Register> rates) {
-  const std::size_t order = c.size() - 1, n = rates.size();
+void SolutionSeries::Program::expand(double t, double scale, std::span<double> c, std::span<const Register> rates) {
+  const std::size_t n = rates.size(), order = c.size() / n - 1;
   NativeFunction* const ready = function_of(order, rates);
   if (ready == nullptr || ready->code() == nullptr) {
-    expand_solution<double, std::vector<double>>(series, rates, t, scale, c);
+    expand_solution<double>(series, rates, t, scale, c);
     if (ready != nullptr) ready->count(members * order * order / 4);
     return;
   }
   series.begin(order);
-  const std::span<double> rows = series.rows();
+  double* const rows = series.rows().data();
   rows[0] = t;
-  std::ranges::copy(c[0], rows.begin() + 1);
-  reinterpret_cast<NativeSeries>(ready->code())(rows.data(), scale);
-  for (std::size_t k = 1; k <= order; ++k) {
-    const double* const row = rows.data() + k * series.row_size() + 1;
-    double* const to = c[k].data();
-    for (std::size_t i = 0; i < n; ++i) to[i] = row[i];
-  }
+  std::copy_n(c.data(), n, rows + 1);
+  reinterpret_cast<NativeSeries>(ready->code())(rows, c.data(), scale);
 }
 
 SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives,
@@ -608,8 +602,7 @@ void SolutionSeries::set(std::uint32_t variable, double value) {
   program_->is_stale = true;
 }
 
-void SolutionSeries::expand(double t, double scale, std::span<std::vector<double>> c,
-                            std::span<const std::size_t> held) {
+void SolutionSeries::expand(double t, double scale, std::span<double> c, std::span<const std::size_t> held) {
   if (program_->is_stale) program_->renew();
   if (held.empty()) return program_->expand(t, scale, c, program_->derivatives);
   std::vector<Register> derivatives = program_->derivatives;

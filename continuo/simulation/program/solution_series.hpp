@@ -2,8 +2,8 @@
 // operations on series. Equal operations on the same level, such as those of a grid's points, are one.
 //
 //   SolutionSeries series(program, program.model.modes[0].derivatives, start_values(program.model));
-//   std::vector<std::vector<double>> c(9, x);
-//   series.expand(t, 0.1, c);   // x(t + 0.1 s) = c[0] + c[1] s + ... + c[8] s^8
+//   std::vector<double> c(9 * n);   // begins with x
+//   series.expand(t, 0.1, c);       // x_i(t + 0.1 s) = c[i] + c[n + i] s + ... + c[8 n + i] s^8
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -26,8 +26,8 @@ class SolutionSeries {
   SolutionSeries& operator=(SolutionSeries&&) noexcept;
   ~SolutionSeries();
 
-  /// The coefficients after c[0], which are there; those of `held` states are 0.
-  void expand(double t, double scale, std::span<std::vector<double>> c, std::span<const std::size_t> held = {});
+  /// The coefficients after those of order 0, which are there, order by order; those of `held` states are 0.
+  void expand(double t, double scale, std::span<double> c, std::span<const std::size_t> held = {});
   /// Whether anything in the expressions jumps or bends.
   [[nodiscard]] bool has_corners() const;
 
