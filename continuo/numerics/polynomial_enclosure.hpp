@@ -25,8 +25,8 @@
 
 namespace continuo {
 
-/// That of the dense output of odex, the greatest of all methods.
-inline constexpr std::size_t greatest_enclosed_degree = 17;
+/// That of the dense output of taylor, the greatest of all methods.
+inline constexpr std::size_t greatest_enclosed_degree = 20;
 
 namespace enclosing {
 

@@ -238,7 +238,7 @@ TEST(NativeSeries, OfRandomModelsHasTheBitsOfTheProgram) {
   const TestFolder folder;
   const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
   std::mt19937 random(8);
-  for (const std::size_t highest : {1U, 4U, 17U}) {
+  for (const std::size_t highest : {1U, 4U, 20U}) {
     RandomFormula formula(random);
     std::string text = "param a = 1.25, n = 3\nrun 0..1\n";
     std::vector<std::string> names{"x", "y", "z"};

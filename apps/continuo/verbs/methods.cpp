@@ -58,7 +58,7 @@ constexpr std::array citations{
     Citation{"adams", "Shampine, Gordon, Computer Solution of ODEs (1975), orders 1 to 12; for costly equations"},
     Citation{"odex",
              "Bulirsch, Stoer, Numer. Math. 8 (1966); Hairer, Norsett, Wanner, Solving ODEs I, II.9, orders 4 to 18"},
-    Citation{"taylor", "Jorba, Zou, Exp. Math. 14 (2005), Taylor series of orders 4 to 17; smooth and strict"},
+    Citation{"taylor", "Jorba, Zou, Exp. Math. 14 (2005), Taylor series of orders 4 to 20; smooth and strict"},
     Citation{"gauss4", "Hairer, Wanner, Solving ODEs II, IV.5; symplectic"},
     Citation{"radau5", "Hairer, Wanner, Solving ODEs II, IV.8"},
     Citation{"radau", "Hairer, Wanner, J. Comput. Appl. Math. 111 (1999), orders 5, 9, 13; stiff and strict"},

@@ -7,7 +7,8 @@
 //
 // |c_j| in tolerances: their steps, and one order more. A series of radius of convergence r has c_j ~ r^-j; then h is
 // r/e^2, and what is cut off is the tolerance times e^-6. With their order, errors after a long run are ten times those
-// of other methods at the same tolerance. The coefficients at the end of a step, which the next one begins with,
+// of other methods at the same tolerance. In small systems the series costs less than the step around it: three orders
+// more give longer steps, by a third at 1e-10. The coefficients at the end of a step, which the next one begins with,
 // are computed at once: they give the size of the next step, and c_1 there is f, by which the defect of the polynomial
 // at its end is known. Where f may have jumps or corners, or depends on time, the defect is measured within the step as
 // well.
@@ -62,7 +63,7 @@ template <class F, class X>
 /// number type: [](auto t, const auto& x, auto& dxdt) { ... }. Steps of a fixed size have order 8.
 struct TaylorSeries {
   static constexpr std::string_view name = "taylor";
-  static constexpr int order = 17, error_order = 16, starting_order = 8, dense_degree = 17, dense_order = 17;
+  static constexpr int order = 20, error_order = 19, starting_order = 8, dense_degree = 20, dense_order = 20;
   static constexpr int order_of_fixed_steps = 8;
   static constexpr bool second_order = false;
   /// No coefficients can be had of every system.
@@ -299,6 +300,7 @@ struct TaylorSeries {
 
  private:
   static constexpr std::size_t least_order = 4;
+  static constexpr std::size_t small_dimension = 8, more_of_small = 3;
   static constexpr double greatest_factor = 10;          // of one step to the next
   static constexpr std::array within{0.27, 0.52, 0.77};  // where defects are measured in a step
 
@@ -375,7 +377,7 @@ struct TaylorSeries {
     const double asked = static_cast<double>(relative > Scalar<X>(0) ? relative : tolerance_as_number(tolerance));
     const double wanted = std::ceil(2 - 0.5 * std::log(std::max(asked, 1e-16)));
     const auto p = static_cast<std::size_t>(std::max(wanted, static_cast<double>(least_order)));
-    return std::min<std::size_t>(p, dense_degree);
+    return std::min<std::size_t>(p + (dimension(work.rest) <= small_dimension ? more_of_small : 0), dense_degree);
   }
 
   template <State X, class System>
