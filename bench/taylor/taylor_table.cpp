@@ -59,7 +59,9 @@ struct Cost {
   double error = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The least of some runs.
+constexpr double seconds_of_runs = 2;
+
+/// The least of the runs of two seconds, so that other work on the machine is not in it.
 Cost cost(const Problem& problem, const std::string& text, const char* method, double tolerance, bool native) {
   Cost result;
   model::Loaded loaded = model::load(model::Source("problem.sim", text));
@@ -70,10 +72,12 @@ Cost cost(const Problem& problem, const std::string& text, const char* method, d
   const auto use = native ? model::NativeUse::always : model::NativeUse::never;
   loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = use});
   const auto program = model::compile(*loaded.model);
-  for (int repeat = 0; repeat < 50; ++repeat) {
+  double spent = 0;
+  for (int repeat = 0; repeat < 3 || spent < seconds_of_runs; ++repeat) {
     const model::Simulated simulated =
         model::simulate(program, {.method = method, .rtol = tolerance, .atol = {tolerance}, .keep_rows = false});
     if (!simulated.run) return result;
+    spent += simulated.run->statistics.seconds;
     result.milliseconds = std::min(result.milliseconds, 1e3 * simulated.run->statistics.seconds);
     result.steps = simulated.run->statistics.steps;
     result.error = std::abs(simulated.run->final_state()[problem.state] - problem.exact);
