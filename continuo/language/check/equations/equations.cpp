@@ -37,14 +37,14 @@ std::optional<Value> Equations::explicit_left(const ast::Equation& equation, Sco
 }
 
 /// Both sides brought to one unit: left - right = 0, and what it holds.
-EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) const {
+EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) {
   Scope scope = equation.scope;
   std::vector<std::uint32_t> on_left, held;
   scope.highest = &on_left;
   const std::optional<Value> highest = explicit_left(*equation.text, scope, on_left);
   Term left{equation.text->left, highest ? *highest : expressions_.translator.translate(equation.text->left, scope)};
   scope.highest = &held;
-  Term right{equation.text->right, expressions_.translator.translate(equation.text->right, scope)};
+  Term right{equation.text->right, right_sides_.translate(expressions_, equation.text->right, scope)};
   EquationAtWork work;
   work.span = equation.span;
   const bool is_explicit = highest && held.empty();

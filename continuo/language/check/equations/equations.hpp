@@ -9,6 +9,7 @@
 #include <continuo/language/check/equations/equation_counts.hpp>
 #include <continuo/language/check/equations/equations_at_work.hpp>
 #include <continuo/language/check/expressions/expressions.hpp>
+#include <continuo/language/check/expressions/family_translator.hpp>
 
 namespace continuo::model::detail {
 
@@ -34,7 +35,7 @@ class Equations {
  private:
   [[nodiscard]] std::optional<Value> explicit_left(const ast::Equation& equation, Scope& scope,
                                                    std::vector<std::uint32_t>& held) const;
-  [[nodiscard]] EquationAtWork read_equation(const Placed<ast::Equation>& equation) const;
+  [[nodiscard]] EquationAtWork read_equation(const Placed<ast::Equation>& equation);
   void solve_mode(std::size_t mode);
   void sort_out_algebraic(ModeAtWork& work);
   void count_algebraic(std::size_t count) const;
@@ -52,6 +53,7 @@ class Equations {
   Graph& graph_;
   const Model& model_;
   EquationCounts counts_;
+  FamilyTranslator right_sides_;
   std::vector<double> start_values_;  // of all variables, once the states have theirs; empty until asked for
   SolvedEquations made_;
 };

@@ -16,7 +16,7 @@ ConditionValues::Entry& ConditionValues::of(std::size_t index, std::size_t depth
   scope.samples = &entry.samples;
   scope.moment = &text.time;
   scope.depth = depth;
-  entry.value = expressions.translator.translate(text.value, scope);
+  entry.value = members_.translate(expressions, text.value, scope);
   expressions.operations.want_number(text.value, entry.value);
   entry.progress = Progress::done;
   return entry;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <continuo/language/check/expressions/family_translator.hpp>
 #include <continuo/language/check/names/scope.hpp>
 
 namespace continuo::model::detail {
@@ -28,6 +29,7 @@ class ConditionValues {
  private:
   Workspace& workspace_;
   std::vector<Entry> entries_;
+  FamilyTranslator members_;
 };
 
 class StateUnits {

@@ -137,23 +137,26 @@ Value Translator::binary(const ast::Binary& node, Scope& scope) const {
   return {.node = g.apply(op, left, right), .condition = true};
 }
 
-/// What a condition comes to that consists of numbers, indices and parameters that decide the size of a family: these
-/// change only when the model is read again.
-Choice Translator::known_choice(NodeId condition) const {
+std::optional<double> Translator::structural_number(NodeId node) const {
   Graph& g = workspace_.graph;
-  if (g[condition].op == Op::constant) return g.is(condition, 0) ? Choice::no : Choice::yes;
-  const auto [found, is_new] = workspace_.choices.try_emplace(condition.index, Choice::open);
-  if (!is_new) return found->second;
   const Layout& layout = workspace_.layout;
   const auto value_of = [&](std::uint32_t variable) -> std::optional<NodeId> {
     if (variable < layout.parameters || variable >= layout.inputs) return std::nullopt;
     return workspace_.definitions.structural_value(workspace_.declared.parameters[variable - layout.parameters]);
   };
-  for (const std::uint32_t variable : variables_of(g, condition)) {
-    if (!value_of(variable)) return Choice::open;
+  for (const std::uint32_t variable : variables_of(g, node)) {
+    if (!value_of(variable)) return std::nullopt;
   }
-  const NodeId value = substitute(g, condition, value_of);
-  if (g[value].op == Op::constant) found->second = g.is(value, 0) ? Choice::no : Choice::yes;
+  return g.value(substitute(g, node, value_of));
+}
+
+/// Of a condition on indices and structural parameters.
+Choice Translator::known_choice(NodeId condition) const {
+  Graph& g = workspace_.graph;
+  if (g[condition].op == Op::constant) return g.is(condition, 0) ? Choice::no : Choice::yes;
+  const auto [found, is_new] = workspace_.choices.try_emplace(condition.index, Choice::open);
+  if (!is_new) return found->second;
+  if (const auto value = structural_number(condition)) found->second = *value == 0 ? Choice::no : Choice::yes;
   return found->second;
 }
 

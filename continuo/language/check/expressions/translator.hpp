@@ -1,6 +1,8 @@
 // continuo/language/check/expressions/translator.hpp
 // From an expression of the text to a node, with its unit checked on the way.
 #pragma once
+#include <optional>
+
 #include <continuo/language/check/names/scope.hpp>
 
 namespace continuo::model::detail {
@@ -17,6 +19,9 @@ class Translator {
   [[nodiscard]] Value translate(const ast::Expression& expression, Scope& scope) const;
   /// Brings b to the unit of a; false after saying that they do not fit, and what may have been meant.
   [[nodiscard]] bool align(const Term& a, Term& b, Span span, Scope& scope) const;
+  /// What a node comes to that consists of numbers and of parameters that decide the size of a family: these change
+  /// only when the model is read again.
+  [[nodiscard]] std::optional<double> structural_number(NodeId node) const;
 
  private:
   [[nodiscard]] Value translate_node(const ast::Expression& expression, Scope& scope) const;

@@ -108,7 +108,7 @@ void InitialValues::place_condition(std::size_t index, bool initial) {
   const Measured& unit = expressions_.workspace.units.of_state(state);
   const bool fits = factor_between(value.measured, unit).has_value();  // then nobody reads the name
   const NodeId node = expressions_.operations.in_unit(
-      condition.text->value, value, unit, fits ? std::string() : "`" + with_primes(base.name, primes) + "`");
+      condition.text->value, value, unit, fits ? std::string() : fmt::format("`{}`", with_primes(base.name, primes)));
   if (time->value == start_time_ && (initial || entry.samples.empty())) {
     states_[state].initial = node;
     states_[state].span = condition.span;
