@@ -11,13 +11,15 @@
 #include <continuo/simulation/c_export.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/symbolic/graph/derivative.hpp>
+#include <continuo/symbolic/native/c_lists.hpp>
 #include <continuo/symbolic/native/c_source.hpp>
 
 namespace continuo::model {
 
 namespace {
 
-constexpr std::size_t most_names = 1000;  // of a grid of a million points none would be read
+// Of a grid of a million points no name would be read, and numbers are computed by loops.
+constexpr std::size_t most_names = 1000, most_numbers = 1000;
 
 std::string identifier(std::string_view name) {
   std::string text;
@@ -59,6 +61,7 @@ class CText {
   }
 
   std::string text() {
+    write_start();
     write_modes();
     write_jacobians();
     write_outputs();
@@ -81,17 +84,18 @@ class CText {
                       const std::function<std::string(std::size_t)>& comment) {
     if (nodes.empty()) return;
     const Tape tape = tape_of(graph, nodes);
-    work_ = std::max(work_, tape.register_count());
     const std::string signature = fmt::format(
         "void {}_{}(double t, const double *restrict x, const double *restrict p, const double *restrict u,\n"
         "    double *restrict r, double *restrict y)",
         name_, what);
     const bool few = nodes.size() <= most_names;
-    functions_ += "\n" + c_function(tape, {.signature = signature,
-                                           .arrays = arrays_,
-                                           .time = "t",
-                                           .prepared = false,
-                                           .output_comment = few ? comment : nullptr});
+    const CFunction function = c_function(tape, {.signature = signature,
+                                                 .arrays = arrays_,
+                                                 .time = "t",
+                                                 .prepared = false,
+                                                 .output_comment = few ? comment : nullptr});
+    functions_ += "\n" + function.text;
+    work_ = std::max(work_, function.registers);
   }
 
   std::string of_mode(std::size_t mode) const {
@@ -121,22 +125,51 @@ class CText {
       Graph graph = model_.graph;
       const std::vector<JacobianEntry> entries = jacobian(graph, model_.modes[mode].derivatives, columns);
       std::vector<NodeId> nodes;
-      std::vector<std::size_t> rows, places;
+      std::vector<std::uint32_t> rows, places;
       for (const JacobianEntry& entry : entries) {
         nodes.push_back(entry.value);
         rows.push_back(entry.row);
         places.push_back(entry.column);
       }
       if (nodes.empty()) continue;
-      functions_ += fmt::format(
-          "\n/* Where {0}_jacobian{1} has its entries; all others are zero. */\n#define {2}_JACOBIAN{3} {4}\n", name_,
-          of_mode(mode), NAME_, upper(of_mode(mode)), nodes.size());
-      functions_ += array("int", fmt::format("jacobian{}_rows", of_mode(mode)), rows);
-      functions_ += array("int", fmt::format("jacobian{}_columns", of_mode(mode)), places);
+      write_pattern(of_mode(mode), rows, places);
       write_function(graph, nodes, "jacobian" + of_mode(mode), [&](std::size_t k) {
         return commented(fmt::format("d ({})' / d {}", model_.states[rows[k]].column, model_.states[places[k]].column));
       });
     }
+  }
+
+  void write_pattern(const std::string& mode, const std::vector<std::uint32_t>& rows,
+                     const std::vector<std::uint32_t>& columns) {
+    functions_ += fmt::format(
+        "\n/* Where {0}_jacobian{1} has its entries; all others are zero. */\n#define {2}_JACOBIAN{3} {4}\n", name_,
+        mode, NAME_, upper(mode), rows.size());
+    const CList lists[] = {{"rows", rows}, {"columns", columns}};
+    const auto loops = rows.size() > most_numbers ? c_loops(lists) : std::nullopt;
+    if (loops) {
+      functions_ += fmt::format("void {}_jacobian{}_places(int *restrict rows, int *restrict columns) {{\n{}}}\n",
+                                name_, mode, *loops);
+    } else {
+      functions_ += array("int", fmt::format("jacobian{}_rows", mode), rows);
+      functions_ += array("int", fmt::format("jacobian{}_columns", mode), columns);
+    }
+  }
+
+  /// Of a grid a function: its numbers are many, and follow a few rules.
+  void write_start() {
+    if (!has_start_function()) return;
+    std::vector<NodeId> nodes;
+    for (const State& state : model_.states) nodes.push_back(state.initial);
+    write_function(model_.graph, nodes, "start", nullptr);
+  }
+  bool has_start_function() const {
+    if (model_.states.size() <= most_numbers) return false;
+    std::vector<NodeId> nodes;
+    for (const State& state : model_.states) nodes.push_back(state.initial);
+    if (!std::ranges::all_of(nodes, &NodeId::valid)) return false;
+    return std::ranges::all_of(variables_of(model_.graph, nodes), [&](std::uint32_t variable) {
+      return variable == Layout::time || (variable >= model_.layout.parameters && variable < model_.layout.samples);
+    });
   }
 
   /// What the model calls an output, then what it names by `let`.
@@ -198,8 +231,9 @@ class CText {
     const auto part = [&](std::uint32_t begin, std::size_t count) {
       return std::vector<double>(all.begin() + begin, all.begin() + begin + static_cast<std::ptrdiff_t>(count));
     };
-    std::string text = array("double", "start", part(model_.layout.states, model_.states.size())) +
-                       array("double", "parameters", part(model_.layout.parameters, model_.parameters.size())) +
+    const std::string start =
+        has_start_function() ? "" : array("double", "start", part(model_.layout.states, model_.states.size()));
+    std::string text = start + array("double", "parameters", part(model_.layout.parameters, model_.parameters.size())) +
                        array("double", "inputs", part(model_.layout.inputs, model_.inputs.size()));
     return text;
   }
@@ -211,11 +245,14 @@ class CText {
         " *   double r[{0}_WORK], dxdt[{0}_STATES];                     r: one for each thread\n"
         " *   {1}_rates{2}(t, x, p, u, r, dxdt);\n"
         " *\n"
-        " * t is the time{3}, x the states, p the parameters, u the inputs, in the order of the names below; "
-        "{1}_start,\n"
+        " * t is the time{3}, x the states, p the parameters, u the inputs, in the order of the names below;{4}\n"
         " * {1}_parameters and {1}_inputs are their values in the model. An array that has no elements may be null.\n",
         NAME_, name_, of_mode(model_.start_mode),
-        model_.time_unit.empty() ? "" : fmt::format(" in {}", commented(model_.time_unit)));
+        model_.time_unit.empty() ? "" : fmt::format(" in {}", commented(model_.time_unit)),
+        has_start_function() ? "" : fmt::format(" {}_start,", name_));
+    if (has_start_function())
+      text += fmt::format(
+          " * {0}_start(t, 0, p, u, r, x) computes the states at the start; there are too many to list.\n", name_);
     if (model_.modes.size() > 1) {
       text += " * In each mode the model has other equations, and functions of its own:";
       for (const Mode& mode : model_.modes) text += " " + commented(mode.name);

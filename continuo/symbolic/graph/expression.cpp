@@ -50,9 +50,10 @@ bool same(const Node& p, const Node& q) {
          std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
 }
 
-/// The slot that holds an equal node, or the empty one for it.
-std::size_t slot_of(const Node& node, const std::vector<Node>& nodes, const std::vector<std::uint32_t>& slots) {
-  const auto ends_at = [&](std::size_t slot) { return slots[slot] == empty || same(nodes[slots[slot]], node); };
+/// The empty slot for a node, or the one where `is_it` says that the node in it is equal.
+template <class IsIt>
+std::size_t slot_of(const Node& node, const std::vector<std::uint32_t>& slots, const IsIt& is_it) {
+  const auto ends_at = [&](std::size_t slot) { return slots[slot] == empty || is_it(slots[slot]); };
   const std::size_t mask = slots.size() - 1;
   Home near = home(node);
   for (int tries = 0; tries < 4; ++tries) {
@@ -72,12 +73,13 @@ Graph::Graph() : slots_(64, empty) {}
 
 void Graph::grow() {
   slots_.assign(2 * slots_.size(), empty);
-  for (std::uint32_t i = 0; i < nodes_.size(); ++i) slots_[slot_of(nodes_[i], nodes_, slots_)] = i;
+  const auto is_another = [](std::uint32_t) { return false; };
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) slots_[slot_of(nodes_[i], slots_, is_another)] = i;
 }
 
 NodeId Graph::intern(const Node& node) {
   if (2 * nodes_.size() >= slots_.size()) grow();
-  const std::size_t slot = slot_of(node, nodes_, slots_);
+  const std::size_t slot = slot_of(node, slots_, [&](std::uint32_t i) { return same(nodes_[i], node); });
   if (slots_[slot] != empty) return NodeId{slots_[slot]};
   slots_[slot] = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back(node);

@@ -26,7 +26,6 @@ using tape::Code;
 
 constexpr std::size_t smallest_family = 12;  // fewer members are statements
 constexpr std::size_t most_leaves_of_loop = 64;
-constexpr std::string_view loop_variables = "ijkl";  // innermost first
 
 }  // namespace
 
@@ -35,14 +34,15 @@ class TapeWriter {
  public:
   TapeWriter(const Tape& tape, const CFunctionOptions& options)
       : options_(options), constants_(constants_of(tape)), values_(body_of(tape)), stored_(values_to_store(values_)) {
+    find_registers();
     find_shapes();
   }
 
-  std::string function() {
+  CFunction function() {
     std::size_t first = 0;
     for (std::size_t n = 0; n < values_.instructions(); ++n) first = store(n, first);
     outputs();
-    return fmt::format("{} {{\n{}{}}}\n", options_.signature, lists_, text_);
+    return {.text = fmt::format("{} {{\n{}{}}}\n", options_.signature, lists_, text_), .registers = registers_};
   }
 
  private:
@@ -112,7 +112,9 @@ class TapeWriter {
   }
 
   std::int32_t address_in(Array array, std::uint32_t place) const {
-    const std::uint32_t begin = array < options_.arrays.size() ? options_.arrays[array].begin : 0;
+    const std::uint32_t begin = array < options_.arrays.size() ? options_.arrays[array].begin
+                                : array == registers_array()   ? first_register_
+                                                               : 0;
     return static_cast<std::int32_t>(place - begin);
   }
 
@@ -125,6 +127,18 @@ class TapeWriter {
     return values_.is_value(ref) ? values_.place(values_.number(ref)) : ref;
   }
   Array array_of_leaf(ValueRef ref) const { return values_.is_value(ref) ? registers_array() : array_of(ref); }
+
+  /// Where nothing is prepared, `r` holds what is stored and nothing else.
+  void find_registers() {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), end = 0;
+    for (std::size_t v = 0; v < values_.size(); ++v) {
+      if (stored_[v] == 0 || is_named(v)) continue;
+      first = std::min(first, values_.place(v));
+      end = std::max(end, values_.place(v) + 1);
+    }
+    first_register_ = options_.prepared || end == 0 ? 0 : first;
+    registers_ = options_.prepared ? values_.registers() : end - first_register_;
+  }
 
   // -- shapes ---------------------------------------------------------------------------------------------------------
 
@@ -196,7 +210,8 @@ class TapeWriter {
     }
     std::vector<Member> members;
     for (; value < end; ++value)
-      if (stored_[value] != 0) members.push_back({values_.ref(value), static_cast<std::int32_t>(values_.place(value))});
+      if (stored_[value] != 0)
+        members.push_back({values_.ref(value), address_in(registers_array(), values_.place(value))});
     write(members, "r", true);
     return end;
   }
@@ -372,19 +387,6 @@ class TapeWriter {
     return sum_text(begin, steps);
   }
 
-  /// begin + ... + steps[1]*j + steps[0]*i.
-  static std::string sum_text(std::int64_t begin, std::span<const std::int64_t> steps) {
-    const bool all_zero = std::ranges::all_of(steps, [](std::int64_t step) { return step == 0; });
-    std::string text = begin != 0 || all_zero ? fmt::format("{}", begin) : "";
-    for (std::size_t d = steps.size(); d-- > 0;) {
-      if (steps[d] == 0) continue;
-      text += text.empty() ? (steps[d] < 0 ? "-" : "") : steps[d] < 0 ? " - " : " + ";
-      if (std::abs(steps[d]) != 1) text += fmt::format("{}*", std::abs(steps[d]));
-      text += loop_variables[d];
-    }
-    return text;
-  }
-
   /// A leaf that is another one for each member of a loop.
   std::string varied(ValueRef leaf, std::int32_t begin, const std::string& index, const LoopNest& nest,
                      std::size_t column) {
@@ -504,11 +506,12 @@ class TapeWriter {
   std::vector<Shape> shape_, read_as_;                  // by value: as it is computed, and where it is read
   std::map<std::vector<std::int32_t>, std::string> names_of_lists_;
   std::string text_, lists_;
-  std::size_t names_ = 0;
+  std::size_t names_ = 0, registers_ = 0;
+  std::uint32_t first_register_ = 0;
   bool has_constants_table_ = false;
 };
 
-std::string c_function(const Tape& tape, const CFunctionOptions& options) {
+CFunction c_function(const Tape& tape, const CFunctionOptions& options) {
   return TapeWriter(tape, options).function();
 }
 

@@ -1,11 +1,12 @@
 // A tape written as C: the same operations in the same order, so that the compiled text computes the same bits.
 //
 //   const std::string function = c_function(tape, {.signature = "void rates(double *r, const double *x, double *y)",
-//                                                  .arrays = states});
+//                                                  .arrays = states}).text;
 //   const std::string text = "#include <math.h>\n" + c_helpers(function, tape.tables()) + function;
 //
-// The text is C11 and needs nothing but the mathematics. Equal operations of a family stay loops, as on the tape; rows
-// of a grid that follow each other are one loop round them, so that a grid takes few lines.
+// The text is C11 and needs nothing but the mathematics. What is computed alike for many members of a family is a loop,
+// whatever loops the tape has, and for the members of a grid loops in each other: a grid takes few lines. A number that
+// a loop needs on its way has no place in memory.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -41,9 +42,14 @@ struct CFunctionOptions {
   std::function<std::string(std::size_t)> output_comment = {};
 };
 
-/// A function that computes what Tape::evaluate does, and writes the outputs to the array `y`. Its cost is one pass
+struct CFunction {
+  std::string text;
+  std::size_t registers = 0;  // numbers in `r`
+};
+
+/// A function that computes what Tape::evaluate does, and writes the outputs to the array `y`. Its cost is a few passes
 /// over the tape.
-[[nodiscard]] std::string c_function(const Tape& tape, const CFunctionOptions& options);
+[[nodiscard]] CFunction c_function(const Tape& tape, const CFunctionOptions& options);
 
 /// The helpers that functions of this text call (`minimum`, `table_3`, ...), with the tables of the tape. To be written
 /// before the functions, once for all tapes of the same tables.

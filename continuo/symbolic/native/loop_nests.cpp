@@ -1,6 +1,9 @@
 // Merges members into loops, loops into loops around them, as long as any are found.
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <continuo/symbolic/native/loop_nests.hpp>
 
@@ -127,6 +130,18 @@ Loops loops_of(std::span<const std::int32_t> addresses, std::size_t width) {
   }
   std::ranges::sort(loops.alone);
   return loops;
+}
+
+std::string sum_text(std::int64_t begin, std::span<const std::int64_t> steps) {
+  const bool all_zero = std::ranges::all_of(steps, [](std::int64_t step) { return step == 0; });
+  std::string text = begin != 0 || all_zero ? fmt::format("{}", begin) : "";
+  for (std::size_t d = steps.size(); d-- > 0;) {
+    if (steps[d] == 0) continue;
+    text += text.empty() ? (steps[d] < 0 ? "-" : "") : steps[d] < 0 ? " - " : " + ";
+    if (std::abs(steps[d]) != 1) text += fmt::format("{}*", std::abs(steps[d]));
+    text += loop_variables[d];
+  }
+  return text;
 }
 
 }  // namespace continuo::model

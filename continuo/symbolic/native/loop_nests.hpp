@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace continuo::model {
@@ -28,5 +30,10 @@ struct Loops {
 
 /// The addresses of member m are `width` numbers from addresses[m*width] on. Each member is in one loop or alone.
 [[nodiscard]] Loops loops_of(std::span<const std::int32_t> addresses, std::size_t width);
+
+/// Of the loops' variables in C, the innermost first.
+inline constexpr std::string_view loop_variables = "ijkl";
+/// begin + ... + steps[1]*j + steps[0]*i.
+[[nodiscard]] std::string sum_text(std::int64_t begin, std::span<const std::int64_t> steps);
 
 }  // namespace continuo::model

@@ -55,7 +55,7 @@ std::string function_of(const Tape& tape, bool in_lanes) {
   const std::string_view type = in_lanes ? "lanes" : "double";
   const std::string signature =
       fmt::format("void evaluate({0} *restrict r, const {0} *restrict x, {0} *restrict y)", type);
-  return c_function(tape, {.signature = signature, .arrays = states, .in_lanes = in_lanes});
+  return c_function(tape, {.signature = signature, .arrays = states, .in_lanes = in_lanes}).text;
 }
 
 }  // namespace
