@@ -144,10 +144,12 @@ std::vector<double> rates_of_c(const TestFolder& folder, const std::string& text
   const std::string file = (folder.path / "grid").string();
   std::ofstream c(file + ".c");
   c << text
-    << "\n#include <stdio.h>\nint main(void) {\n  static double x[GRID_STATES], y[GRID_STATES], r[GRID_WORK + 1];\n"
+    << "\n#include <stdio.h>\nint main(void) {\n  static double x[GRID_STATES], y[GRID_STATES], r[GRID_WORK + 20000];\n"
     << "  FILE *f = fopen(\"" << file << ".x\", \"rb\");\n"
     << "  if (fread(x, 8, GRID_STATES, f) != GRID_STATES) return 1;\n"
+    << "  for (int i = 0; i < 20000; ++i) r[GRID_WORK + i] = 7;\n"
     << "  Grid_rates(0.25, x, Grid_parameters, 0, r, y);\n"
+    << "  for (int i = 0; i < 20000; ++i) if (r[GRID_WORK + i] != 7) return 2;\n"
     << "  for (int i = 0; i < GRID_STATES; ++i) printf(\"%a\\n\", y[i]);\n}\n";
   c.close();
   std::ofstream(file + ".x", std::ios::binary)
@@ -181,7 +183,8 @@ TEST(Grid, IsWhatItsMembersWrittenOutAre) {
     for (double& value : x) value = normal(random);
     const std::vector<double> expected = rates_at(*of_members, start, x);
     expect_the_same(rates_at(*of_family, start, x), expected, "tape");
-    ASSERT_TRUE(in_c->derivatives[0]->is_native()) << native->report().trouble;
+    const Tape::Size size = in_c->derivatives[0]->size();  // terms may cancel until nothing is left
+    ASSERT_TRUE(in_c->derivatives[0]->is_native() || size.single + size.batches == 0) << native->report().trouble;
     expect_the_same(rates_at(*in_c, start, x), expected, "machine code");
     if (seed % 4 != 0) continue;
     const std::vector<double> printed = rates_of_c(folder, *c_text(*of_family), x);
