@@ -93,8 +93,9 @@ class TapeCompiler {
 
   Tape compile(std::span<const NodeId> outputs) {
     place_constants(outputs);
-    std::vector<Selected> steady, moving;
-    for (const Selected& s : selected_) (s.steady ? steady : moving).push_back(s);
+    std::ranges::stable_partition(selected_, &Selected::steady);
+    const auto moving_begin = std::ranges::find(selected_, false, &Selected::steady);
+    const std::span<const Selected> steady(selected_.begin(), moving_begin), moving(moving_begin, selected_.end());
     // What is prepared stays where it is until the next preparation.
     for (const Selected& s : steady) last_use_[s.result.index] = kept;
     emit(tape_.preparation_, steady);
@@ -192,7 +193,7 @@ class TapeCompiler {
     for (const NodeId output : outputs) place_constant(output);
   }
 
-  void emit(Tape::Program& program, const std::vector<Selected>& operations) {
+  void emit(Tape::Program& program, std::span<const Selected> operations) {
     const std::vector<Group> groups = groups_of(operations, colour_);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       for (const std::size_t i : groups[g]) {
@@ -249,7 +250,7 @@ class TapeCompiler {
   }
 
   /// The results of a group lie side by side, whatever it is made of.
-  void emit_group(Tape::Program& program, const std::vector<Selected>& operations, const Group& group,
+  void emit_group(Tape::Program& program, std::span<const Selected> operations, const Group& group,
                   std::size_t number) {
     const std::vector<Member> members = in_order(operations, group);
     const std::uint32_t results = registers_.take(static_cast<std::uint32_t>(members.size()));
@@ -267,7 +268,7 @@ class TapeCompiler {
   }
 
   /// Ordered by the place of one operand, then by those after it: the operand by which most of it needs no gathering.
-  std::vector<Member> in_order(const std::vector<Selected>& operations, const Group& group) const {
+  std::vector<Member> in_order(std::span<const Selected> operations, const Group& group) const {
     std::vector<Member> members, best;
     for (const std::size_t i : group) members.push_back({&operations[i], places_of(operations[i])});
     std::size_t fewest = kept;

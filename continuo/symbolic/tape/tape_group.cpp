@@ -56,6 +56,7 @@ struct Coloured {
 std::vector<Coloured> coloured(std::span<const Selected> selected, std::vector<Colour>& colour) {
   std::vector<std::uint32_t> level(colour.size(), 0);
   std::vector<Coloured> all;
+  all.reserve(selected.size());
   for (std::size_t i = 0; i < selected.size(); ++i) {
     const Selected& s = selected[i];
     std::uint32_t mine = 1;
