@@ -19,7 +19,7 @@ namespace continuo::model {
 namespace {
 
 // Of a grid of a million points no name would be read, and numbers are computed by loops.
-constexpr std::size_t most_names = 1000, most_numbers = 1000;
+constexpr std::size_t most_names = 1000, most_numbers = 10'000;
 
 std::string identifier(std::string_view name) {
   std::string text;
