@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,6 +26,18 @@ x(0) = 1
 when x falls through 0.5 { go driven }
 run 0..1
 )"));
+}
+
+/// The expressions of a copy may change: what was made of those of the other program would be wrong.
+TEST(ModelProgram, MakesATapeOnceForAllRunsAndNoneForACopy) {
+  const auto program = compile(good("model M\nx' = -x\nx(0) = 1\nrun 0..1\n"));
+  const std::span<const NodeId> nodes = program->model.modes.front().derivatives;
+  const auto tape = program->shared_tape_of(nodes);
+  EXPECT_EQ(program->shared_tape_of(nodes), tape);
+  ModelProgram copy = *program;
+  EXPECT_NE(copy.shared_tape_of(nodes), tape);
+  EXPECT_EQ(program->shared_tape_of({}), program->shared_tape_of({}));
+  EXPECT_NE(program->shared_tape_of({}), tape);
 }
 
 TEST(ModelProgram, HasABlockForTheLimitOfEachEvent) {

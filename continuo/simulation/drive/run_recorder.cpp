@@ -41,12 +41,12 @@ RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool kee
   motion_.columns = columns_of(model);
   motion_.states = model.states.size();
   const std::vector<NodeId> quantities = quantity_nodes(model);
-  quantities_ = Evaluation(program.tape_of(quantities), plan.variables);
+  quantities_ = Evaluation(program.shared_tape_of(quantities), plan.variables);
   quantity_values_.resize(quantities.size());
   std::vector<NodeId> all;
   if (has_energy_) all = {model.total_energy, program.energy_scale};
   all.insert(all.end(), watched.begin(), watched.end());
-  watched_ = Evaluation(program.tape_of(all), plan.variables);
+  watched_ = Evaluation(program.shared_tape_of(all), plan.variables);
   watched_values_.resize(all.size());
   for (const double t : sample_times) samples_.push_back({t, {}});
 }

@@ -203,6 +203,10 @@ std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes)
   return std::make_shared<const Tape>(graph, replaced, tape_variables(), tables);
 }
 
+std::shared_ptr<const Tape> ModelProgram::shared_tape_of(std::span<const NodeId> nodes) const {
+  return shared_tapes.of(nodes, [this](std::span<const NodeId> wanted) { return tape_of(wanted); });
+}
+
 std::shared_ptr<const Tape> ModelProgram::busy_tape_of(std::span<const NodeId> nodes) const {
   std::shared_ptr<const Tape> tape = tape_of(nodes);
   if (model.native) model.native->watch(tape);

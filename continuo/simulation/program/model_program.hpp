@@ -3,7 +3,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +48,30 @@ struct TableInput {
   Table table;
 };
 
+/// Tapes that every run of a program needs, each made once. Threads may share it. A copy is empty, because the
+/// expressions of a program that was copied may change.
+class SharedTapes {
+ public:
+  SharedTapes() = default;
+  SharedTapes(const SharedTapes&) {}
+  SharedTapes& operator=(const SharedTapes&) {
+    tapes_.clear();
+    return *this;
+  }
+  /// The tape of these expressions, made by `make` where there is none yet.
+  template <class Make>
+  [[nodiscard]] std::shared_ptr<const Tape> of(std::span<const NodeId> nodes, const Make& make) {
+    const std::scoped_lock lock(mutex_);
+    std::shared_ptr<const Tape>& tape = tapes_[{nodes.begin(), nodes.end()}];
+    if (!tape) tape = make(nodes);
+    return tape;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::vector<NodeId>, std::shared_ptr<const Tape>> tapes_;
+};
+
 struct ModelProgram {
   explicit ModelProgram(Model model_);
 
@@ -82,8 +108,12 @@ struct ModelProgram {
   [[nodiscard]] NodeId with_inputs(Graph& graph, NodeId node) const;
   /// A tape of these expressions, interpolated inputs in place.
   [[nodiscard]] std::shared_ptr<const Tape> tape_of(std::span<const NodeId> nodes) const;
+  /// The same of what every run needs: made once.
+  [[nodiscard]] std::shared_ptr<const Tape> shared_tape_of(std::span<const NodeId> nodes) const;
   /// The same of what every step evaluates: worth machine code, where the model has a compiler.
   [[nodiscard]] std::shared_ptr<const Tape> busy_tape_of(std::span<const NodeId> nodes) const;
+
+  mutable SharedTapes shared_tapes{};
 };
 
 /// Inputs with points follow them, whoever gave the points: the file of the model or a caller.

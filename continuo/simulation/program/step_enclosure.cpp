@@ -9,7 +9,7 @@ namespace continuo::model {
 
 StepEnclosure::StepEnclosure(const ModelProgram& program, std::span<const NodeId> nodes,
                              std::span<const double> variables, std::span<const UnknownBlock> blocks)
-    : tape_(program.tape_of(nodes)),
+    : tape_(program.shared_tape_of(nodes)),
       states_begin_(program.model.layout.states),
       variables_(variables.begin(), variables.end()) {
   for (const UnknownBlock& block : blocks) unknowns_.emplace_back(program, block, variables);

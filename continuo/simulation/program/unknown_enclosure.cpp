@@ -17,7 +17,7 @@ double middle_of(const Enclosure<double>& a) {
 
 UnknownEnclosure::UnknownEnclosure(const ModelProgram& program, UnknownBlock block, std::span<const double> variables)
     : block_(std::move(block)),
-      tape_(program.tape_of(block_.residuals)),
+      tape_(program.shared_tape_of(block_.residuals)),
       states_begin_(program.model.layout.states),
       variables_(variables.begin(), variables.end()),
       middle_(block_.components.size()),
