@@ -63,6 +63,9 @@ std::size_t find_mode(const Model& model, std::string_view name) {
 }
 
 double evaluate(const Model& model, NodeId node, std::span<const double> variables) {
+  // Most settings are a number or a name: no list of what they are computed from is needed.
+  if (node.valid() && model.graph[node].op == Op::constant) return model.graph[node].value;
+  if (node.valid() && model.graph[node].op == Op::variable) return variables[model.graph[node].number];
   return evaluate(model, {&node, 1}, variables).front();
 }
 std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes, std::span<const double> variables) {
