@@ -165,6 +165,7 @@ class Study {
 
   Status fill(const SweepFolder& folder, std::vector<std::uint64_t> chunks) const {
     studies::SweepWork work = work_of(std::move(chunks));
+    work.at_once = true;
     work.on_chunk = [&](std::uint64_t chunk, const Outcomes& outcomes) { return folder.write(chunk, outcomes); };
     if (options_.ranks) work.take = [ranks = options_.ranks] { return ranks->take(); };
     return run(work);

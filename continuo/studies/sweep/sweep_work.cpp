@@ -84,6 +84,7 @@ class Hands {
   }
 
   void hand_on(std::size_t place, std::vector<SweepOutcome> outcomes) {
+    if (work_.at_once) return deliver_at_once(place, std::move(outcomes));
     const std::scoped_lock lock(mutex_);
     if (!work_.in_order) {
       deliver(place, std::move(outcomes));
@@ -95,6 +96,16 @@ class Hands {
       waiting_.erase(first);
     }
     turned_.notify_all();
+  }
+
+  void deliver_at_once(std::size_t place, std::vector<SweepOutcome> outcomes) {
+    Status status = work_.on_chunk(work_.chunks[place], std::move(outcomes));
+    const std::scoped_lock lock(mutex_);
+    if (status) {
+      ++delivered_;
+    } else if (status_) {
+      status_ = std::move(status);
+    }
   }
 
   void deliver(std::size_t place, std::vector<SweepOutcome> outcomes) {

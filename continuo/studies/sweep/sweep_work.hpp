@@ -21,8 +21,9 @@ struct SweepWork {
   std::vector<std::uint64_t> chunks;  // in rising order
   std::size_t threads = 1;
   bool in_order = false;  // on_chunk is called in the order of `chunks`; else as they come
+  bool at_once = false;   // on_chunk may be called by several threads at the same time; not with `in_order`
   const std::atomic<bool>* interrupt = nullptr;
-  /// Gets every chunk, one after the other. After a failure no more are begun.
+  /// Gets every chunk, one after the other where not `at_once`. After a failure no more are begun.
   std::function<Status(std::uint64_t chunk, std::vector<SweepOutcome> outcomes)> on_chunk{};
   /// The next place in `chunks` that nobody has taken, or one behind the last, where other processes take from the same
   /// list; without it all are made here. Not with `in_order`.
