@@ -175,6 +175,28 @@ TEST_F(SweepChunks, PartsAreAllChunksOnce) {
   }
 }
 
+TEST_F(SweepChunks, ThreadsMayHandThemOnAtTheSameTime) {
+  const PreparedSweep sweep = decay();
+  const SweepIdentity identity = identity_of(sweep, "1");
+  const auto folder = SweepFolder::open(path("at_once"), identity);
+  ASSERT_TRUE(folder);
+  SweepWork work{.chunks = folder->missing(), .threads = 4, .at_once = true};
+  work.on_chunk = [&](std::uint64_t chunk, const std::vector<SweepOutcome>& made) {
+    return folder->write(chunk, made);
+  };
+  ASSERT_TRUE(run_chunks(sweep, identity, work));
+  for (std::uint64_t chunk = 0; chunk < identity.chunks(); ++chunk) {
+    const auto made = folder->read(chunk);
+    ASSERT_TRUE(made) << describe(made.status());
+    for (std::uint64_t i = 0; i < made->size(); ++i)
+      EXPECT_TRUE(same_bits((*made)[i], sweep.run(identity.first_run(chunk) + i)));
+  }
+  work.on_chunk = [&](std::uint64_t chunk, const std::vector<SweepOutcome>&) {
+    return chunk == 3 ? Status{.ending = Ending::unwritable, .message = "the disk is full"} : Status();
+  };
+  EXPECT_EQ(run_chunks(sweep, identity, work).ending, Ending::unwritable);
+}
+
 TEST_F(SweepChunks, AFailureEndsTheWorkAndAnInterruptLosesTheChunksAtWork) {
   const PreparedSweep sweep = decay();
   const SweepIdentity identity = identity_of(sweep, "1");
