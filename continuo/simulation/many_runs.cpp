@@ -45,10 +45,17 @@ std::size_t steps_together(const Plan& plan, std::size_t limit) {
 /// The runs [first, last) go together.
 class Together final : public RunWatcher<X> {
  public:
-  Together(const std::shared_ptr<const ModelProgram>& program, const std::shared_ptr<NativeFunction>& code,
+  using CodeFor = std::function<std::shared_ptr<NativeFunction>(const std::string& method)>;
+
+  Together(const std::shared_ptr<const ModelProgram>& program, CodeFor code_for,
            std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
            std::span<Planned> planned, const OnJudged& done)
-      : program_(program), code_(code), experiments_(experiments), watchers_(watchers), planned_(planned), done_(done) {
+      : program_(program),
+        code_for_(std::move(code_for)),
+        experiments_(experiments),
+        watchers_(watchers),
+        planned_(planned),
+        done_(done) {
     run_.motion.states = program_->model.states.size();
     run_.motion.columns.resize(1 + run_.motion.states);
   }
@@ -57,14 +64,17 @@ class Together final : public RunWatcher<X> {
   [[nodiscard]] bool run(std::size_t first, std::size_t last) {
     first_ = first;
     goes_on_ = true;
-    if (!equations_) equations_.emplace(*program_, code_);
-    for (std::size_t i = first; i < last; ++i) begin(i);
     const Plan& plan = *planned_[first].plan;
-    integrate_together(plan.method, {.equations = *equations_,
-                                     .interval = {plan.from, plan.to},
-                                     .options = options(first),
-                                     .count = last - first,
-                                     .start = [this](std::size_t run) { return start(run); }});
+    if (!equations_ || method_ != plan.method) {
+      method_ = plan.method;
+      equations_.emplace(*program_, code_for_(method_));
+    }
+    for (std::size_t i = first; i < last; ++i) begin(i);
+    integrate_together(method_, {.equations = *equations_,
+                                 .interval = {plan.from, plan.to},
+                                 .options = options(first),
+                                 .count = last - first,
+                                 .start = [this](std::size_t run) { return start(run); }});
     const std::atomic<bool>* interrupt = experiments_[first].interrupt;
     return goes_on_ && !(interrupt && interrupt->load());
   }
@@ -151,7 +161,8 @@ class Together final : public RunWatcher<X> {
   }
 
   const std::shared_ptr<const ModelProgram>& program_;
-  const std::shared_ptr<NativeFunction>& code_;
+  CodeFor code_for_;
+  std::string method_;  // that the code of the equations is for
   std::optional<LaneEquations> equations_;
   std::span<const Experiment> experiments_;
   std::span<MotionWatcher* const> watchers_;
@@ -193,9 +204,14 @@ bool is_plain_motion(const ModelProgram& program) {
 }  // namespace
 
 ManyRuns::ManyRuns(std::shared_ptr<const ModelProgram> program)
-    : program_(std::move(program)), can_go_together_(is_plain_motion(*program_)) {
-  if (can_go_together_ && program_->model.native)
-    code_ = program_->model.native->lane_code(program_->derivatives.front());
+    : program_(std::move(program)), can_go_together_(is_plain_motion(*program_)) {}
+
+std::shared_ptr<NativeFunction> ManyRuns::code_for(const std::string& method) const {
+  if (!program_->model.native) return nullptr;
+  const std::scoped_lock lock(mutex_);
+  std::shared_ptr<NativeFunction>& code = codes_[method];
+  if (!code) code = program_->model.native->lane_code(program_->derivatives.front(), step_formula(method));
+  return code;
 }
 
 void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
@@ -203,7 +219,8 @@ void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWat
   std::vector<Planned> planned(experiments.size());
   for (std::size_t i = 0; can_go_together_ && i < experiments.size(); ++i)
     planned[i].plan = plan_run(*program_, experiments[i], planned[i].problems);
-  Together runs(program_, code_, experiments, watchers, planned, done);
+  Together runs(
+      program_, [this](const std::string& method) { return code_for(method); }, experiments, watchers, planned, done);
   for (std::size_t first = 0, last = 0; first < experiments.size(); first = last) {
     last = can_go_together_ ? end_of_group(planned, experiments, first) : first + 1;
     if (!(last > first + 1 ? runs.run(first, last) : runs.run_alone(first))) return;

@@ -7,9 +7,12 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <continuo/simulation/motion_watcher.hpp>
@@ -46,9 +49,13 @@ class ManyRuns {
             const OnJudged& done) const;
 
  private:
+  /// The machine code of the equations with the steps of this method; null where nobody compiles any.
+  [[nodiscard]] std::shared_ptr<NativeFunction> code_for(const std::string& method) const;
+
   std::shared_ptr<const ModelProgram> program_;
   bool can_go_together_;
-  std::shared_ptr<NativeFunction> code_{};  // null where nobody compiles any
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, std::shared_ptr<NativeFunction>> codes_;  // by method
 };
 
 }  // namespace continuo::model

@@ -1,42 +1,43 @@
 // Runs of a sweep that go together against the same runs one by one, bit by bit: random systems by every method that
 // can, whatever their number, neighbours and order, those that fail among them.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tests/symbolic/native_referee.hpp>
 
 #include <continuo/language/load.hpp>
+#include <continuo/simulation/native.hpp>
 #include <continuo/studies/sweep/sweep_run.hpp>
 
 namespace continuo::studies::sweep_together_test {
 namespace {
 
-PreparedSweep prepared(const std::string& text) {
+PreparedSweep prepared(const std::string& text, model::Experiment experiment = {},
+                       std::shared_ptr<model::NativeCompiler> native = {}) {
   model::Loaded loaded = model::load(model::Source("model.sim", text));
   EXPECT_TRUE(loaded) << loaded.text() << text;
-  auto made = PreparedSweep::create(*std::move(loaded.model), {});
+  loaded.model->native = std::move(native);
+  auto made = PreparedSweep::create(*std::move(loaded.model), std::move(experiment));
   EXPECT_TRUE(made) << describe(made.status());
   return *std::move(made);
 }
 
-std::uint64_t bits(double value) {
-  return std::isnan(value) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(value);
-}
-
 void expect_same(const SweepOutcome& actual, const SweepOutcome& expected) {
   EXPECT_EQ(actual.ending, expected.ending);
-  EXPECT_EQ(bits(actual.t), bits(expected.t));
+  EXPECT_EQ(model::bits(actual.t), model::bits(expected.t));
   EXPECT_EQ(actual.message, expected.message);
   ASSERT_EQ(actual.kept.size(), expected.kept.size());
   for (std::size_t k = 0; k < expected.kept.size(); ++k)
-    EXPECT_EQ(bits(actual.kept[k]), bits(expected.kept[k])) << "kept " << k << ": " << actual.kept[k];
+    EXPECT_EQ(model::bits(actual.kept[k]), model::bits(expected.kept[k])) << "kept " << k << ": " << actual.kept[k];
 }
 
 std::vector<SweepOutcome> together(const PreparedSweep& sweep, const std::vector<std::uint64_t>& runs) {
@@ -115,6 +116,42 @@ TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
     EXPECT_TRUE(sweep.goes_together());
     expect_the_runs_one_by_one(sweep, all_runs(sweep));
   }
+}
+
+/// Machine code takes whole steps. The runs one by one are made without any.
+void expect_the_same_by_machine_code(const std::string& text, const model::Experiment& experiment,
+                                     const std::shared_ptr<model::NativeCompiler>& native) {
+  SCOPED_TRACE(text);
+  const PreparedSweep sweep = prepared(text, experiment), compiled = prepared(text, experiment, native);
+  const std::vector<SweepOutcome> outcomes = together(compiled, all_runs(compiled));
+  ASSERT_EQ(outcomes.size(), sweep.runs());
+  for (std::uint64_t run = 0; run < sweep.runs(); ++run) expect_same(outcomes[run], sweep.run(run));
+}
+
+TEST(SweepTogether, StepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
+  const model::TestFolder folder;
+  const auto native =
+      std::make_shared<model::NativeCompiler>(model::NativeOptions{model::NativeUse::always, folder.path / "cache"});
+  const std::vector<std::string> ways = {"method dop853 tol 1e-8",  "method tsitouras5 tol 1e-6",
+                                         "method verner7 tol 1e-7", "method bogacki_shampine3 tol 1e-4",
+                                         "method rk4 step 0.01",    "method dormand_prince5 step 0.03"};
+  for (unsigned seed = 0; seed < ways.size(); ++seed) {
+    std::mt19937 random(seed);
+    expect_the_same_by_machine_code(random_model(random, ways[seed]), {}, native);
+  }
+  // With a tolerance for each state, some runs that fail, and nobody who sees the motion between the steps.
+  expect_the_same_by_machine_code(
+      "param k = 1\nx' = k*x^2 - y\ny' = x + sin(3*t)\nx(0) = 1\ny(0) = 0\nrun 0..2 method dop853 tol 1e-6\n"
+      "sweep { k from 0 to 2 count 20\n  keep x at end, y at end }\n",
+      {.rtol_of = {{"y", 1e-9}}, .atol_of = {{"x", 1e-10}}}, native);
+  // More states than are written out one by one, in a family, which is a loop.
+  expect_the_same_by_machine_code(
+      "param k = 1\nfor i in 1..14 { u[i](0) = i/14 }\nfor i in 2..13 { u[i]' = k*(u[i-1] - 2*u[i] + u[i+1]) }\n"
+      "u[1]' = -u[1]\nu[14]' = sin(u[13])\nrun 0..1 method tsitouras5 tol 1e-7\n"
+      "sweep { k from 0.1 to 2 count 20\n  keep u[3] at end, max(u[7]) }\n",
+      {}, native);
+  EXPECT_EQ(native->report().trouble, "");
+  EXPECT_GE(native->report().compiled, ways.size());
 }
 
 /// x' = a*x^2 from 1 ends at 1/a, the root of a negative number is none, and steps can be too many.

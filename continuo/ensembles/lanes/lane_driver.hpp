@@ -103,6 +103,9 @@ class LaneDriver {
   using Run = RunOfLane<F, X, P, M, E...>;
   using Source = typename Run::Source;
 
+  // What happens to a lane at the end of its step.
+  enum class Next : char { step, ended, begins_anew };
+
   template <class WideState, class Narrow>
   [[nodiscard]] static WideState widened(const Narrow& narrow) {
     if constexpr (FixedSize<WideState>) {
@@ -198,11 +201,24 @@ class LaneDriver {
   // ---- steps
 
   void step() {
+    has_square_ = false;
     if constexpr (is_small) {
       flat_step();
-    } else {
+    } else if (!take_own_step()) {
       static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
     }
+  }
+  // A system may have steps of its own, with the bits of the method's, and the square of their error.
+  [[nodiscard]] bool take_own_step() {
+    constexpr bool takes_steps = requires(F& f, const Wide& wide, const WideX& x, const WideP& p, WideX& x_new) {
+      f.template take_step<M>(wide, x, wide, p, work_, x_new, tolerance_.all(), &square_, true);
+    };
+    if constexpr (takes_steps) {
+      const bool wants_square = M::error_order > 0 && !sizes_.fixed();
+      has_square_ = f_.template take_step<M>(sizes_.t(), x_, sizes_.h(), system_.p, work_, x_new_, tolerance_.all(),
+                                             wants_square ? &square_ : nullptr, has_rows_ || Source::any_guard);
+    }
+    return has_square_;
   }
   // With f compiled into it, however often it occurs: a call sends the lanes of a small state through memory.
   [[gnu::flatten]] void flat_step() {
@@ -246,29 +262,30 @@ class LaneDriver {
   // f at the beginning of the step, for the lanes that have not kept it from the step before.
   void refresh() {
     const auto fresh = fresh_ != Wide(0.0), active = sizes_.active();
+    work_.start_fresh = true;
     if (none(active & fresh)) {
-      evaluate(system_, sizes_.t(), x_, work_.k[0]);
+      if constexpr (is_small) {
+        evaluate(system_, sizes_.t(), x_, work_.k[0]);
+      } else {
+        work_.start_fresh = false;  // the step does that
+      }
     } else if (any(active & !fresh)) {
       evaluate(system_, sizes_.t(), x_, slope_);
       for (std::size_t i = 0; i < x_.size(); ++i)
         work_.k[0].data()[i] = select(fresh, work_.k[0].data()[i], slope_.data()[i]);
     }
     fresh_ = Wide(1.0);
-    work_.start_fresh = true;
   }
 
   void judge() {
     if constexpr (M::error_order > 0) {
       if (!sizes_.fixed()) {
-        const Wide square = M::error_square(work_, sizes_.h(), x_, x_new_, tolerance_.all());
-        return sizes_.judge(square, M::error_order);
+        if (!has_square_) square_ = M::error_square(work_, sizes_.h(), x_, x_new_, tolerance_.all());
+        return sizes_.judge(square_, M::error_order);
       }
     }
     sizes_.judge_fixed(zero_if_all_finite(x_new_));
   }
-
-  // What happens to a lane at the end of its step.
-  enum class Next : char { step, ended, begins_anew };
 
   // The accepted lanes go on to the end of their steps, and what happens on the way happens.
   void commit() {
@@ -408,6 +425,8 @@ class LaneDriver {
   LaneSizes<W> sizes_;
   LaneTolerance<W> tolerance_;
   Wide fresh_{0.0};  // 1 where work_ has f at the beginning of the next step
+  Wide square_;      // of the error of the step
+  bool has_square_ = false;
   std::vector<Run> runs_;
   bool has_rows_;           // or somebody who may want to see pieces of the motion
   bool exhausted_ = false;  // no run is left to begin

@@ -1,5 +1,8 @@
-// Finds the runs in lanes of a method by its name.
+// Finds the runs in lanes of a method by its name, and its numbers.
 #include <array>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
 
 #include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
@@ -14,13 +17,46 @@ namespace continuo::model {
 
 namespace {
 
+/// The weights that `weight` gives for the stages before `end`, as doubles.
+template <class Weight>
+std::vector<double> row(std::size_t end, const Weight& weight) {
+  std::vector<double> weights;
+  for (std::size_t j = 0; j < end; ++j) weights.push_back(Coefficient(weight(j)).template as<double>());
+  return weights;
+}
+
+template <class M>
+CStepFormula formula() {
+  constexpr auto& tableau = M::tableau;
+  constexpr std::size_t stages = tableau.stages;
+  CStepFormula made;
+  made.c = row(stages, [](std::size_t j) { return M::tableau.c[j]; });
+  made.b = row(stages, [](std::size_t j) { return M::tableau.b[j]; });
+  for (std::size_t s = 0; s < stages; ++s) made.a.push_back(row(s, [s](std::size_t j) { return M::tableau.a[s][j]; }));
+  if constexpr (std::is_same_v<M, Dop853>) {
+    made.error = row(stages, [](std::size_t j) { return dop853::error5[j]; });
+    made.second_error = row(stages, [](std::size_t j) { return M::tableau.b[j] - dop853::third_order[j]; });
+  } else if constexpr (M::error_order > 0) {
+    made.error = row(stages, [](std::size_t j) { return M::tableau.b[j] - M::tableau.embedded[j]; });
+  }
+  made.ends_with_f = tableau.first_same_as_last();
+  return made;
+}
+
 struct LanesOfMethod {
   std::string_view name;
   void (*integrate)(const TogetherRuns& runs);
+  CStepFormula (*formula)();
 };
 
 template <class... M>
-constexpr auto lanes_of = std::array{LanesOfMethod{M::name, integrate_together_by<M>}...};
+constexpr auto lanes_of =
+    std::array{LanesOfMethod{M::name, integrate_together_by<M>, formula<M>, requires {typename M::Pair;
+}  // namespace
+}  // namespace continuo::model
+...
+}
+;
 
 constexpr auto methods_with_lanes =
     lanes_of<BogackiShampine3, DormandPrince5, Dop853, Rk4, Tsitouras5, Verner7, Verner9>;
@@ -35,6 +71,10 @@ const LanesOfMethod* find(std::string_view method) {
 
 bool has_lanes(std::string_view method) {
   return find(method) != nullptr;
+}
+
+CStepFormula step_formula(std::string_view method) {
+  return find(method)->formula();
 }
 
 void integrate_together(std::string_view method, const TogetherRuns& runs) {

@@ -9,6 +9,7 @@
 #include <continuo/ensembles/ensemble_options.hpp>
 #include <continuo/ensembles/run_start.hpp>
 #include <continuo/simulation/together/lane_equations.hpp>
+#include <continuo/symbolic/native/c_step.hpp>
 
 namespace continuo::model {
 
@@ -25,6 +26,9 @@ struct TogetherRuns {
 
 /// Whether there are lanes for this method.
 [[nodiscard]] bool has_lanes(std::string_view method);
+
+/// The numbers of a method that has lanes.
+[[nodiscard]] CStepFormula step_formula(std::string_view method);
 
 /// Makes the runs on this thread; options.finished gets the results.
 void integrate_together(std::string_view method, const TogetherRuns& runs);

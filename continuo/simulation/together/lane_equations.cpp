@@ -62,20 +62,32 @@ void LaneEquations::operator()(const Wide& t, const std::vector<Wide>& x, std::v
   }
 }
 
+void LaneEquations::set_parameters(const std::vector<Wide>& p) {
+  if (wide_lanes_.all.empty()) {
+    set_parameters(lanes_, p);
+  } else {
+    set_parameters(wide_lanes_, p);
+  }
+}
+
+template <class Register>
+void LaneEquations::set_parameters(Registers<Register>& registers, const std::vector<Wide>& p) {
+  runs_ = p[Layout::time];
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (!is_state(i)) registers.all[i].numbers = p[i].values();
+  tape_->prepare<Register>(registers.all);
+}
+
 template <class Register>
 void LaneEquations::evaluate(Registers<Register>& registers, const Wide& t, const std::vector<Wide>& x,
                              std::vector<Wide>& dxdt, const std::vector<Wide>& p) {
-  std::vector<Register>& all = registers.all;
-  if (any(runs_ != p[Layout::time])) [[unlikely]] {
-    runs_ = p[Layout::time];
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (!is_state(i)) all[i].numbers = p[i].values();
-    tape_->prepare<Register>(all);
-  }
-  std::memcpy(static_cast<void*>(&all[Layout::time]), &t, sizeof t);
+  if (any(runs_ != p[Layout::time])) [[unlikely]]
+    set_parameters(registers, p);
+  std::memcpy(static_cast<void*>(&registers.all[Layout::time]), &t, sizeof t);
   if (void* const native = code_ ? code_->code() : nullptr) {
-    reinterpret_cast<NativeEvaluation>(native)(all.front().numbers.data(), reinterpret_cast<const double*>(x.data()),
-                                               reinterpret_cast<double*>(dxdt.data()));
+    reinterpret_cast<NativeLaneEvaluation>(native)(registers.all.front().numbers.data(),
+                                                   reinterpret_cast<const double*>(x.data()),
+                                                   reinterpret_cast<double*>(dxdt.data()), nullptr);
   } else {
     evaluate_tape(registers, x, dxdt);
   }

@@ -97,9 +97,16 @@ std::string c_helpers(std::string_view functions, std::span<const Table> tables)
 namespace {
 
 constexpr std::string_view lane_type =
-    "typedef double lanes __attribute__((vector_size(64), aligned(8)));\n"
-    "typedef long long lane_masks __attribute__((vector_size(64), aligned(8)));\n"
-    "static inline lanes all_lanes(double a) { return (lanes){a, a, a, a, a, a, a, a}; }\n"
+    "#if defined(__AVX512F__)\n"
+    "#define WIDTH 8\n"
+    "#elif defined(__AVX2__)\n"
+    "#define WIDTH 4\n"
+    "#else\n"
+    "#define WIDTH 2\n"
+    "#endif\n"
+    "typedef double lanes __attribute__((vector_size(8 * WIDTH)));\n"
+    "typedef long long lane_masks __attribute__((vector_size(8 * WIDTH)));\n"
+    "static inline lanes all_lanes(double a) { return a - (lanes){0}; }\n"
     "static inline lanes choose(lane_masks m, lanes a, lanes b) {\n"
     "  return (lanes)(((lane_masks)a & m) | ((lane_masks)b & ~m));\n"
     "}\n"
@@ -154,7 +161,7 @@ std::string c_lane_helpers(std::string_view functions) {
     text += fmt::format(
         "static inline lanes each_{0}(lanes a{1}) {{\n"
         "  lanes y;\n"
-        "  for (int i = 0; i < 8; ++i) y[i] = {0}(a[i]{2});\n"
+        "  for (int i = 0; i < WIDTH; ++i) y[i] = {0}(a[i]{2});\n"
         "  return y;\n"
         "}}\n",
         name, two ? ", lanes b" : "", two ? ", b[i]" : "");

@@ -55,8 +55,9 @@ struct CFunction {
 /// before the functions, once for all tapes of the same tables.
 [[nodiscard]] std::string c_helpers(std::string_view functions, std::span<const Table> tables);
 
-/// The helpers of functions in lanes: the type `lanes` of eight doubles, whatever the processor, and the operations
-/// that are done one lane after the other (`each_sin`, `each_table_3`, ...). Those of c_helpers come before.
+/// The helpers of functions in lanes: the type `lanes` of WIDTH doubles, as many as a register of the processor has,
+/// and the operations that are done one lane after the other (`each_sin`, `each_table_3`, ...). Those of c_helpers come
+/// before.
 [[nodiscard]] std::string c_lane_helpers(std::string_view functions);
 
 /// Whether the text stays of a size that a compiler takes in seconds: single operations and numbers of tables are few.

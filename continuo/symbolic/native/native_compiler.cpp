@@ -49,13 +49,17 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// What Tape::evaluate does, as a function of C, for one run or for several at once.
-std::string function_of(const Tape& tape, bool in_lanes) {
+/// What Tape::evaluate does, as a function of C.
+std::string function_of(const Tape& tape) {
   const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
-  const std::string_view type = in_lanes ? "lanes" : "double";
-  const std::string signature =
-      fmt::format("void evaluate({0} *restrict r, const {0} *restrict x, {0} *restrict y)", type);
-  return c_function(tape, {.signature = signature, .arrays = states, .in_lanes = in_lanes}).text;
+  return c_function(tape,
+                    {.signature = "void evaluate(double *restrict r, const double *restrict x, double *restrict y)",
+                     .arrays = states}).text;
+}
+
+/// All that a compiler needs of functions on a tape.
+std::string whole_text(const std::string& functions, const Tape& tape) {
+  return std::string(heading) + c_helpers(functions, tape.tables()) + functions;
 }
 
 }  // namespace
@@ -102,14 +106,11 @@ std::shared_ptr<NativeFunction> NativeCompiler::function(const std::string& key,
   return made;
 }
 
-std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape) {
+std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape,
+                                                          CStepFormula formula) {
   const auto lanes = std::make_shared<NativeFunction>();
   if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return lanes;
-  provide(lanes, [tape] {
-    std::string function = function_of(*tape, true);
-    function = c_lane_helpers(function) + function;
-    return std::string(heading) + c_helpers(function, tape->tables()) + function;
-  });
+  provide(lanes, [tape, formula = std::move(formula)] { return whole_text(c_lane_evaluation(*tape, formula), *tape); });
   return lanes;
 }
 
@@ -155,11 +156,7 @@ void NativeCompiler::make_now(const Job& job, std::stop_token stop) {
 }
 
 NativeCompiler::Job NativeCompiler::job_of(const std::shared_ptr<const Tape>& tape) {
-  return {.text =
-              [tape] {
-                const std::string function = function_of(*tape, false);
-                return std::string(heading) + c_helpers(function, tape->tables()) + function;
-              },
+  return {.text = [tape] { return whole_text(function_of(*tape), *tape); },
           .use =
               [tape](void* function, std::shared_ptr<const void> code) {
                 tape->use_native(reinterpret_cast<NativeEvaluation>(function), std::move(code));

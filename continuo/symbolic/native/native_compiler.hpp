@@ -25,6 +25,7 @@
 
 #include <continuo/status/result.hpp>
 #include <continuo/symbolic/native/c_compiler.hpp>
+#include <continuo/symbolic/native/c_step.hpp>
 #include <continuo/symbolic/native/native_cache.hpp>
 #include <continuo/symbolic/native/native_function.hpp>
 #include <continuo/symbolic/tape/tape.hpp>
@@ -57,9 +58,10 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   /// users share the function and count together. With `always` it is there when this returns, or `report` says why
   /// not.
   [[nodiscard]] std::shared_ptr<NativeFunction> function(const std::string& key, std::function<std::string()> text);
-  /// What Tape::evaluate does, for several runs at once in the lanes of TapeLanes: a NativeEvaluation, whose states and
-  /// outputs need not be aligned. As `function`, and of this caller alone.
-  [[nodiscard]] std::shared_ptr<NativeFunction> lane_code(const std::shared_ptr<const Tape>& tape);
+  /// What Tape::evaluate does, for several runs at once in the lanes of TapeLanes, and steps of a method, if one is
+  /// given: a NativeLaneEvaluation, for which nothing need be aligned. As `function`, and of this caller alone.
+  [[nodiscard]] std::shared_ptr<NativeFunction> lane_code(const std::shared_ptr<const Tape>& tape,
+                                                          CStepFormula formula = {});
 
   struct Report {
     std::size_t compiled = 0;  // tapes and series, by the compiler

@@ -1,0 +1,44 @@
+// A whole step of an explicit Runge-Kutta method for several runs at once, written as C with the equations inside: the
+// compiler knows how many states there are, and which registers this processor has.
+//
+//   const std::string text = c_lane_evaluation(tape, formula);   // a function `evaluate`: a NativeLaneEvaluation
+//
+// The operations are those of ExplicitRungeKutta (methods/explicit_rk/) in the same order, so the bits are the same.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <continuo/symbolic/tape/tape.hpp>
+
+namespace continuo::model {
+
+/// The numbers of a method.
+struct CStepFormula {
+  std::vector<double> c{};               // where in the step each stage is
+  std::vector<std::vector<double>> a{};  // of each stage, the weights of those before it
+  std::vector<double> b{};               // the weights of the stages in the end; empty: no step is wanted
+  std::vector<double> error{};           // their weights in the estimated error; empty where there is none
+  std::vector<double> second_error{};    // of the second estimate that Dop853 has; else empty
+  bool ends_with_f = false;              // the last stage is f at the end of the step
+};
+
+/// What a step of eight runs begins with and where it writes: of each quantity the numbers of all runs, one after the
+/// other. The text of the C function has the same struct.
+struct LaneStep {
+  const double *t, *x, *h;
+  long long evaluates_start;       // 0: stages[0] has f at the start already
+  long long keeps_stages;          // 0: only the first stage is written, and the last one where it is f at the end
+  double* const* stages;           // f at each stage
+  double* x_new;                   //
+  double* square;                  // of the error in units of the tolerance, as M::error_square; null: not wanted
+  const double *rtol, *atol;       // of a component, or of each
+  long long rtol_each, atol_each;  // 0: one for all, 1: one for each component
+};
+
+/// f at `states` where `step` is null, otherwise the step. Registers, states and outputs are those of TapeLanes.
+using NativeLaneEvaluation = void (*)(double* registers, const double* states, double* outputs, const LaneStep* step);
+
+/// The text of the function `evaluate`, but for what every text for a C compiler of ours begins with.
+[[nodiscard]] std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula);
+
+}  // namespace continuo::model
