@@ -69,6 +69,7 @@ class Together final : public RunWatcher<X> {
       method_ = plan.method;
       equations_.emplace(*program_, code_for_(method_));
     }
+    is_watched_ = false;
     for (std::size_t i = first; i < last; ++i) begin(i);
     integrate_together(method_, {.equations = *equations_,
                                  .interval = {plan.from, plan.to},
@@ -126,6 +127,7 @@ class Together final : public RunWatcher<X> {
     for (; one.next_sample < one.samples.size() && one.samples[one.next_sample].t <= one.plan->from; ++one.next_sample)
       if (one.samples[one.next_sample].t == one.plan->from) one.samples[one.next_sample].x = x;
     if (MotionWatcher* seeing = watcher(i)) seeing->begin(*one.plan, x);
+    is_watched_ = is_watched_ || watcher(i) || one.next_sample < one.samples.size();
   }
 
   [[nodiscard]] EnsembleOptions<X, X> options(std::size_t first) {
@@ -141,7 +143,7 @@ class Together final : public RunWatcher<X> {
     options.max_steps = steps_together(plan, one.max_steps);
     options.interrupt = one.interrupt;
     options.threads = 1;
-    options.watcher = this;
+    options.watcher = is_watched_ ? this : nullptr;
     options.finished = [this](const RunResult<X, X>& result) { return goes_on_ = goes_on_ && finish(result); };
     return options;
   }
@@ -170,7 +172,8 @@ class Together final : public RunWatcher<X> {
   const OnJudged& done_;
   std::size_t first_ = 0;
   bool goes_on_ = true;
-  Run run_;  // with what differs from run to run put in
+  bool is_watched_ = false;  // somebody may want to see pieces of their motion
+  Run run_;                  // with what differs from run to run put in
 };
 
 /// The end of the runs from `first` on that agree with that one.
