@@ -117,7 +117,19 @@ struct Switching {
     const bool anew = discontinuity || work.fresh;
     int evaluations = work.is_stiff ? Stiff::step(system, t, x, h, anew, work.stiff, x_new)
                                     : NonStiff::step(system, t, x, h, anew, work.nonstiff, x_new);
-    if (!work.has_mass && (work.begins || work.steps % probe_every == probe_every - 1)) {
+    return evaluations + watch_step(system, t, x, h, work);
+  }
+  /// Whether `watch_step` evaluates f, for which `work` has x' at the start of the step.
+  template <State X>
+  [[nodiscard]] static bool is_probe_due(const Workspace<X>& work) {
+    return !work.has_mass && (work.begins || work.steps % probe_every == probe_every - 1);
+  }
+  /// What is to be learnt of the system at the start of a step that has been taken; part of `step`. The number of
+  /// evaluations of f.
+  template <class System, State X>
+  static int watch_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+    int evaluations = 0;
+    if (is_probe_due(work)) {
       const bool change = work.is_stiff ? explicit_would_do(system, t, x, h, work, evaluations)
                                         : stiff_would_help(system, t, x, h, work, evaluations);
       work.in_favour = change ? work.in_favour + 1 : 0;
@@ -127,6 +139,17 @@ struct Switching {
     }
     work.h = h < 0 ? -h : h;
     return evaluations;
+  }
+
+  /// Another motion begins at x: what was learnt of the system is forgotten.
+  template <State X>
+  static void forget(Workspace<X>& work, const X& x) {
+    work.watch = StiffnessWatch<X>(x);
+    work.is_stiff = work.fresh = work.begun = work.has_mass = work.worthwhile = false;
+    work.begins = true;
+    work.steps = work.turns = work.in_favour = 0;
+    work.patience = least_patience;
+    work.h = work.worthwhile_h = work.h_of_stiff = Scalar<X>(0);
   }
 
   /// How the last step ended.
@@ -159,6 +182,13 @@ struct Switching {
                                             const Tolerance<Scalar<X>>& tolerance) {
     return work.is_stiff ? Stiff::error_norm(work.stiff, h, x, x_new, tolerance)
                          : strictness_of_turns(work) * NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
+  }
+  /// The factor of the explicit method's error norm in that.
+  template <State X>
+  [[nodiscard]] static Scalar<X> strictness_of_turns(const Workspace<X>& work) {
+    if (work.begins && work.watch.oscillates()) return Scalar<X>(strictness_at_start);
+    if (work.turns <= free_turns) return Scalar<X>(1);
+    return Scalar<X>(static_cast<double>(work.turns) / static_cast<double>(free_turns));
   }
   /// The estimated local error of component i.
   template <State X>
@@ -276,12 +306,6 @@ struct Switching {
     } else {
       work.turns -= work.turns / 16;
     }
-  }
-  template <State X>
-  [[nodiscard]] static Scalar<X> strictness_of_turns(const Workspace<X>& work) {
-    if (work.begins && work.watch.oscillates()) return Scalar<X>(strictness_at_start);
-    if (work.turns <= free_turns) return Scalar<X>(1);
-    return Scalar<X>(static_cast<double>(work.turns) / static_cast<double>(free_turns));
   }
 
   // The explicit method is held by stiffness, or its steps are far shorter than those of the stiff method were, even if

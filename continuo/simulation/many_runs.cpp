@@ -179,7 +179,8 @@ class Together final : public RunWatcher<X> {
 /// The end of the runs from `first` on that agree with that one.
 std::size_t end_of_group(std::span<const Planned> planned, std::span<const Experiment> experiments, std::size_t first) {
   const Planned& one = planned[first];
-  if (!one.plan || !has_lanes(one.plan->method) || !is_plain(experiments[first]) || one.plan->from == one.plan->to)
+  if (!one.plan || !has_lanes(one.plan->method, one.plan->step > 0) || !is_plain(experiments[first]) ||
+      one.plan->from == one.plan->to)
     return first + 1;
   std::size_t last = first + 1;
   while (last < planned.size() && planned[last].plan && agree(*one.plan, *planned[last].plan) &&

@@ -118,6 +118,32 @@ TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
   }
 }
 
+TEST(SweepTogether, RunsWithoutANamedMethodHaveTheBitsOfTheRunsOneByOne) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    const PreparedSweep sweep = prepared(random_model(random, seed % 2 == 0 ? "tol 1e-6" : "tol 1e-9"));
+    expect_the_runs_one_by_one(sweep, all_runs(sweep));
+  }
+}
+
+/// Decays and oscillations from slow to so fast that the stiff method takes over, at once or on the way; and one that
+/// turns hundreds of times, of which the pair asks more.
+TEST(SweepTogether, RunsThatBecomeStiffEndAsTheyDoAlone) {
+  for (const char* tolerance : {"tol 1e-4", "tol 1e-8"}) {
+    expect_the_runs_one_by_one(prepared(fmt::format("param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nx(0) = 2\ny(0) = 0\n"
+                                                    "run 0..20 {}\nsweep {{ k in (0.1, 1, 5, 20, 100, 1000, 3, 300)\n"
+                                                    "  keep x at end, mean(x), x at 7 }}\n",
+                                                    tolerance)),
+                               {0, 1, 2, 3, 4, 5, 6, 7});
+    expect_the_runs_one_by_one(
+        prepared(fmt::format("param w = 1\nparam k = 1\nx' = w*y\ny' = -w*x\nz' = k*(cos(t) - z)\nx(0) = 1\ny(0) = 0\n"
+                             "z(0) = 0\nrun 0..30 {}\nsweep {{ w in (0.5, 3, 40); k in (1, 30, 1000, 1e6)\n"
+                             "  keep x at end, z at end, max(x) }}\n",
+                             tolerance)),
+        {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
+  }
+}
+
 /// Machine code takes whole steps. The runs one by one are made without any.
 void expect_the_same_by_machine_code(const std::string& text, const model::Experiment& experiment,
                                      const std::shared_ptr<model::NativeCompiler>& native) {

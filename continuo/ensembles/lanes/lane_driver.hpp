@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <continuo/ensembles/lanes/lane_sizes.hpp>
+#include <continuo/ensembles/lanes/pair_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_queue.hpp>
 #include <continuo/numerics/bernstein.hpp>
@@ -47,6 +48,7 @@ class LaneDriver {
         has_rows_(!settings.options.save.times.empty() || settings.watcher) {
     runs_.reserve(W);
     for (std::size_t lane = 0; lane < W; ++lane) runs_.emplace_back(f_, settings_, as_run_start(starts[0]));
+    if constexpr (PartOfPair<M>) pairs_.assign(W, {as_run_start(starts[0]).x, settings.options});
   }
   LaneDriver(const LaneDriver&) = delete;
   LaneDriver& operator=(const LaneDriver&) = delete;
@@ -84,6 +86,7 @@ class LaneDriver {
     sizes_.choose();
     refresh();
     step();
+    if constexpr (PartOfPair<M>) look_for_stiffness();
     judge();
     if (sizes_.any_refused()) [[unlikely]]
       sizes_.take_refused([this](const auto& refusal) { fail(refusal); });
@@ -148,6 +151,7 @@ class LaneDriver {
       size = one.steps().first_size(limit, settings_.options, one.result().outcome);
       if (size == 0) return finish(lane);
     }
+    if constexpr (PartOfPair<M>) pairs_[lane].begin(one.x());
     put(one.x(), lane, x_);
     put(one.p(), lane, system_.p);
     sizes_.begin_motion(lane, one.t(), size, limit);
@@ -220,6 +224,34 @@ class LaneDriver {
     }
     return has_square_;
   }
+  // As the pair does for one run: what it learns in a step counts in the judgement of that step.
+  void look_for_stiffness() {
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (!sizes_.is_active(lane)) continue;
+      auto& pair = pairs_[lane];
+      if (pair.is_probe_due()) {
+        get(x_, lane, pair.x());
+        get(work_.k[0], lane, pair.slope());
+      }
+      pair.look(runs_[lane].steps().system(), sizes_.t()[lane], sizes_.h()[lane]);
+    }
+  }
+  [[nodiscard]] Wide strictness() const {
+    std::array<double, W> factors{};
+    for (std::size_t lane = 0; lane < W; ++lane) factors[lane] = pairs_[lane].strictness();
+    return Wide(factors);
+  }
+  // Runs that their pair would continue by its stiff method end here.
+  void leave_stiff_ones(const std::array<Next, W>& next) {
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (!sizes_.is_active(lane) || !sizes_.accepted()[lane] || next[lane] == Next::ended) continue;
+      if (pairs_[lane].accept()) continue;
+      set_place(lane);
+      runs_[lane].end(Ending::cannot_continue);
+      finish(lane);
+    }
+  }
+
   // With f compiled into it, however often it occurs: a call sends the lanes of a small state through memory.
   [[gnu::flatten]] void flat_step() {
     static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
@@ -281,6 +313,10 @@ class LaneDriver {
     if constexpr (M::error_order > 0) {
       if (!sizes_.fixed()) {
         if (!has_square_) square_ = M::error_square(work_, sizes_.h(), x_, x_new_, tolerance_.all());
+        if constexpr (PartOfPair<M>) {
+          const Wide norm = strictness() * sqrt(square_);
+          square_ = norm * norm;
+        }
         return sizes_.judge(square_, M::error_order);
       }
     }
@@ -307,6 +343,7 @@ class LaneDriver {
     for (std::size_t i = 0; i < x_.size(); ++i)
       x_.data()[i] = select(sizes_.accepted(), x_new_.data()[i], x_.data()[i]);
     sizes_.commit();
+    if constexpr (PartOfPair<M>) leave_stiff_ones(next);
     if (!any_next) [[likely]]
       return;
     for (std::size_t lane = 0; lane < W; ++lane) {
@@ -428,8 +465,9 @@ class LaneDriver {
   Wide square_;      // of the error of the step
   bool has_square_ = false;
   std::vector<Run> runs_;
-  bool has_rows_;           // or somebody who may want to see pieces of the motion
-  bool exhausted_ = false;  // no run is left to begin
+  std::vector<PairOfLane<M, X>> pairs_;  // where the method is part of one
+  bool has_rows_;                        // or somebody who may want to see pieces of the motion
+  bool exhausted_ = false;               // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
   std::optional<std::size_t> pending_;  // a run that waits for room
 };

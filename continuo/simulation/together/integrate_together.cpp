@@ -11,6 +11,7 @@
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
 #include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/simulation/together/explicit_part.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
 
 namespace continuo::model {
@@ -33,7 +34,7 @@ CStepFormula formula() {
   made.c = row(stages, [](std::size_t j) { return M::tableau.c[j]; });
   made.b = row(stages, [](std::size_t j) { return M::tableau.b[j]; });
   for (std::size_t s = 0; s < stages; ++s) made.a.push_back(row(s, [s](std::size_t j) { return M::tableau.a[s][j]; }));
-  if constexpr (std::is_same_v<M, Dop853>) {
+  if constexpr (std::is_base_of_v<Dop853, M>) {
     made.error = row(stages, [](std::size_t j) { return dop853::error5[j]; });
     made.second_error = row(stages, [](std::size_t j) { return M::tableau.b[j] - dop853::third_order[j]; });
   } else if constexpr (M::error_order > 0) {
@@ -47,6 +48,7 @@ struct LanesOfMethod {
   std::string_view name;
   void (*integrate)(const TogetherRuns& runs);
   CStepFormula (*formula)();
+  bool is_part_of_pair;
 };
 
 template <class... M>
@@ -59,7 +61,8 @@ constexpr auto lanes_of =
 ;
 
 constexpr auto methods_with_lanes =
-    lanes_of<BogackiShampine3, DormandPrince5, Dop853, Rk4, Tsitouras5, Verner7, Verner9>;
+    lanes_of<BogackiShampine3, DormandPrince5, Dop853, Rk4, Tsitouras5, Verner7, Verner9,
+             ExplicitPart<Tsitouras5Rodas5P, Tsitouras5>, ExplicitPart<Dop853Radau, Dop853>>;
 
 const LanesOfMethod* find(std::string_view method) {
   for (const LanesOfMethod& one : methods_with_lanes)
@@ -69,8 +72,9 @@ const LanesOfMethod* find(std::string_view method) {
 
 }  // namespace
 
-bool has_lanes(std::string_view method) {
-  return find(method) != nullptr;
+bool has_lanes(std::string_view method, bool has_fixed_steps) {
+  const LanesOfMethod* const found = find(method);
+  return found && !(has_fixed_steps && found->is_part_of_pair);
 }
 
 CStepFormula step_formula(std::string_view method) {

@@ -24,8 +24,9 @@ struct TogetherRuns {
   std::function<RunStart<X, X>(std::size_t run)> start;
 };
 
-/// Whether there are lanes for this method.
-[[nodiscard]] bool has_lanes(std::string_view method);
+/// Whether there are lanes for this method. Of a pair they are those of its explicit method, and only where the error
+/// decides about the steps; runs that it would continue by its stiff one end as `cannot_continue`.
+[[nodiscard]] bool has_lanes(std::string_view method, bool has_fixed_steps);
 
 /// The numbers of a method that has lanes.
 [[nodiscard]] CStepFormula step_formula(std::string_view method);
