@@ -16,7 +16,10 @@ template <class F, class Starts, class M, std::size_t W, class... E>
 class LaneGroups {
   static constexpr std::size_t in_register = xsimd::batch<double>::size;
   // Steps of a fixed size wait for nothing, and a step of few stages finds room in the registers.
-  static constexpr std::size_t count = M::error_order > 0 && W % in_register == 0 ? W / in_register : 1;
+  // A system may be one of so many lanes, and no others.
+  static constexpr bool is_of_any_width = !requires { F::lanes; };
+  static constexpr std::size_t count =
+      M::error_order > 0 && is_of_any_width && W % in_register == 0 ? W / in_register : 1;
 
  public:
   using Driver = LaneDriver<F, Starts, M, W / count, E...>;

@@ -22,7 +22,8 @@ namespace continuo::model {
 
 class LaneEquations {
  public:
-  using Wide = Lanes<double, TapeLanes::width>;
+  static constexpr std::size_t lanes = TapeLanes::width;  // at once, and no others
+  using Wide = Lanes<double, lanes>;
 
   /// Of a model with one mode, whose equations do not jump. `code`: their machine code, with the steps of the method
   /// that is used, or null.
