@@ -64,8 +64,12 @@ class Lanes {
     if constexpr (W == To::width && std::has_single_bit(W) && W > 1) {
       using Number [[gnu::vector_size(W * sizeof(Real))]] = Real;
       using Other [[gnu::vector_size(W * sizeof(typename To::Scalar))]] = typename To::Scalar;
+      // Copied, not passed: where the vector is wider than the registers, how a function takes it is not settled.
+      Number numbers;
+      std::memcpy(&numbers, &part_, sizeof numbers);
+      const Other others = __builtin_convertvector(numbers, Other);
       To result;
-      result.part_ = std::bit_cast<typename To::Parts>(__builtin_convertvector(std::bit_cast<Number>(part_), Other));
+      std::memcpy(&result.part_, &others, sizeof others);
       return result;
     } else {
       std::array<typename To::Scalar, To::width> result{};
