@@ -2,6 +2,7 @@
 // From selected operations to a tape: order, batches and registers.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -93,14 +94,14 @@ class TapeCompiler {
 
   Tape compile(std::span<const NodeId> outputs) {
     place_constants(outputs);
-    std::ranges::stable_partition(selected_, &Selected::steady);
-    const auto moving_begin = std::ranges::find(selected_, false, &Selected::steady);
-    const std::span<const Selected> steady(selected_.begin(), moving_begin), moving(moving_begin, selected_.end());
+    std::vector<Selected> steady;  // few: the others stay where they are
+    std::ranges::copy_if(selected_, std::back_inserter(steady), &Selected::steady);
+    std::erase_if(selected_, [](const Selected& s) { return s.steady; });
     // What is prepared stays where it is until the next preparation.
     for (const Selected& s : steady) last_use_[s.result.index] = kept;
     emit(tape_.preparation_, steady);
     for (const Selected& s : steady) colour_[s.result.index] = 0;  // a number like any constant
-    emit(tape_.body_, moving);
+    emit(tape_.body_, selected_);
     place_outputs(outputs);
     tape_.registers_ = registers_.size();
     return std::move(tape_);
