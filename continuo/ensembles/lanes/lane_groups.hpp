@@ -19,7 +19,7 @@ class LaneGroups {
   // A system may be one of so many lanes, and no others.
   static constexpr bool is_of_any_width = !requires { F::lanes; };
   static constexpr std::size_t count =
-      M::error_order > 0 && is_of_any_width && W % in_register == 0 ? W / in_register : 1;
+      M::error_order > 0 && is_of_any_width&& W % in_register == 0 ? W / in_register : 1;
 
  public:
   using Driver = LaneDriver<F, Starts, M, W / count, E...>;

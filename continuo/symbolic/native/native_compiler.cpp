@@ -54,7 +54,8 @@ std::string function_of(const Tape& tape) {
   const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
   return c_function(tape,
                     {.signature = "void evaluate(double *restrict r, const double *restrict x, double *restrict y)",
-                     .arrays = states}).text;
+                     .arrays = states})
+      .text;
 }
 
 /// All that a compiler needs of functions on a tape.
