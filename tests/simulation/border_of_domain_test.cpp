@@ -24,7 +24,7 @@ double end_of(const std::string& text, const std::string& method) {
   EXPECT_TRUE(loaded) << loaded.text();
   if (!loaded) return 0;
   Experiment experiment;
-  experiment.method = method;
+  if (!method.empty()) experiment.method = method;
   experiment.rtol = 1e-7;
   experiment.atol = {1e-9};
   const Simulated simulated = simulate(*loaded.model, experiment);

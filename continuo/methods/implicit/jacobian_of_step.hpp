@@ -26,16 +26,15 @@ template <class System, State X>
   const auto is_steep = [&](const Real& slope) { return !(abs(h * slope) < Real(steep)); };
   if (linear.has_mass() || std::ranges::none_of(linear.entries(), is_steep)) return 0;
   const auto scale = [&](std::size_t i) { return tolerance.scale(i, x.data()[i], x.data()[i]); };
+  const auto moves = [&](std::size_t i) { return abs(x.data()[i]) < scale(i) && fx.data()[i] != Real(0); };
+  bool any_moves = false;
+  for (std::size_t i = 0; i < dimension(x); ++i) any_moves = any_moves || moves(i);
+  if (!any_moves) return 0;  // as nearly always; nothing has been allocated so far
   X move = x, further = x;
-  bool moves = false;
   for (std::size_t i = 0; i < dimension(x); ++i) {
-    const Real slope = fx.data()[i];
-    const bool moves_here = abs(x.data()[i]) < scale(i) && slope != Real(0);
-    move.data()[i] = !moves_here ? Real(0) : slope > Real(0) ? Real(scale(i)) : Real(-scale(i));
+    move.data()[i] = !moves(i) ? Real(0) : fx.data()[i] > Real(0) ? Real(scale(i)) : Real(-scale(i));
     further.data()[i] = x.data()[i] + move.data()[i];
-    moves = moves || moves_here;
   }
-  if (!moves) return 0;
   X f_further = fx, promised = fx;
   evaluate(system, t, further, f_further);
   if (!is_finite_state(f_further)) return 1;
