@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <continuo/ensembles/lanes/pair_of_lane.hpp>
 #include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/explicit_rk/dormand_prince5.hpp>
@@ -53,12 +54,7 @@ struct LanesOfMethod {
 
 template <class... M>
 constexpr auto lanes_of =
-    std::array{LanesOfMethod{M::name, integrate_together_by<M>, formula<M>, requires {typename M::Pair;
-}  // namespace
-}  // namespace continuo::model
-...
-}
-;
+    std::array{LanesOfMethod{M::name, integrate_together_by<M>, formula<M>, continuo::detail::PartOfPair<M>}...};
 
 constexpr auto methods_with_lanes =
     lanes_of<BogackiShampine3, DormandPrince5, Dop853, Rk4, Tsitouras5, Verner7, Verner9,

@@ -29,7 +29,7 @@ struct LaneStep {
   long long evaluates_start;       // 0: stages[0] has f at the start already
   long long keeps_stages;          // 0: only the first stage is written, and the last one where it is f at the end
   double* const* stages;           // f at each stage
-  double* x_new;                   //
+  double* x_new;                   // the state at its end
   double* square;                  // of the error in units of the tolerance, as M::error_square; null: not wanted
   const double *rtol, *atol;       // of a component, or of each
   long long rtol_each, atol_each;  // 0: one for all, 1: one for each component
