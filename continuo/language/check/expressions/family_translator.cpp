@@ -50,20 +50,9 @@ Mentions mentions_of(const ast::Expression& text, const std::vector<std::string_
 }
 
 std::optional<Op> arithmetic(ast::BinaryOperator op) {
-  switch (op) {
-    case ast::BinaryOperator::add:
-      return Op::add;
-    case ast::BinaryOperator::subtract:
-      return Op::subtract;
-    case ast::BinaryOperator::multiply:
-      return Op::multiply;
-    case ast::BinaryOperator::divide:
-      return Op::divide;
-    case ast::BinaryOperator::power:
-      return Op::power;
-    default:
-      return std::nullopt;
-  }
+  constexpr std::array all = {Op::add, Op::subtract, Op::multiply, Op::divide, Op::power};
+  const Op found = operation_of(op);
+  return std::ranges::find(all, found) != all.end() ? std::optional(found) : std::nullopt;
 }
 
 bool are_same(const Measured& a, const Measured& b) {

@@ -10,7 +10,13 @@ namespace {
 /// The parser allows expressions 500 operations tall; the stack holds a few of these on top of each other.
 constexpr std::size_t deepest = 1200;
 
-Op operation(ast::BinaryOperator op) {
+bool swaps(ast::BinaryOperator op) {
+  return op == ast::BinaryOperator::greater || op == ast::BinaryOperator::greater_equal;
+}
+
+}  // namespace
+
+Op operation_of(ast::BinaryOperator op) {
   switch (op) {
     case ast::BinaryOperator::add:
       return Op::add;
@@ -39,12 +45,6 @@ Op operation(ast::BinaryOperator op) {
   }
   return Op::add;
 }
-
-bool swaps(ast::BinaryOperator op) {
-  return op == ast::BinaryOperator::greater || op == ast::BinaryOperator::greater_equal;
-}
-
-}  // namespace
 
 Translator::Translator(Expressions& expressions)
     : expressions_(expressions),
@@ -114,7 +114,7 @@ Value Translator::unary(const ast::Unary& node, Scope& scope) const {
 Value Translator::binary(const ast::Binary& node, Scope& scope) const {
   Term a{*node.left, translate(*node.left, scope)}, b{*node.right, translate(*node.right, scope)};
   const Span sides = cover(a.text.span, b.text.span);  // without the brackets round them
-  const Op op = operation(node.op);
+  const Op op = operation_of(node.op);
   Graph& g = workspace_.graph;
   if (op == Op::logical_and || op == Op::logical_or) return operations_.logical(op, a, b);
   if (!operations_.want_numbers(a, b)) return operations_.bad();

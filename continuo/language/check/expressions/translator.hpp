@@ -38,4 +38,7 @@ class Translator {
   const Operations& operations_;
 };
 
+/// The operation that stands for an operator of the text; that of > and >= has its sides exchanged.
+[[nodiscard]] Op operation_of(ast::BinaryOperator op);
+
 }  // namespace continuo::model::detail
