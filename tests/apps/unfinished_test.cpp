@@ -151,6 +151,11 @@ TEST_P(Killed, AtAnyTimeLeavesABeginningOfTheTable) {
     for (const auto& entry : fs::directory_iterator(place.folder)) {
       const std::string other = entry.path().filename().string();
       if (!other.starts_with("out")) continue;
+      // A table that is whole has the name of an unfinished one for the instant before it takes the other's place.
+      if (other == "out.unfinished." + ending && other != csv && other != netcdf) {
+        ASSERT_EQ(place.shell.read(other), whole_text);
+        continue;
+      }
       ASSERT_THAT(other, AnyOf(name, csv, netcdf, name + ".manifest.json", name + ".manifest.unfinished.json"));
     }
   }
