@@ -25,7 +25,7 @@ if [[ ${1-} == --all ]]; then
 fi
 setup_packages test
 say "building the command, the library and the tests"
-cmake --preset release -DCONTINUO_TESTS=ON -DCONTINUO_CHECKS=ON -DCMAKE_UNITY_BUILD=ON >&2
+cmake --preset release -DCONTINUO_TESTS=ON -DCONTINUO_CHECKS=ON -DCONTINUO_PYTHON=ON -DCMAKE_UNITY_BUILD=ON >&2
 touch build/.built.began
 cmake --build build >&2
 mv build/.built.began build/.built

@@ -45,6 +45,10 @@ if(CONTINUO_CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   # A precompiled header carries the time of its making, which would be another one each time.
   target_compile_options(continuo_flags INTERFACE "SHELL:-Xclang -fno-pch-timestamp")
 endif()
+if(NOT CONTINUO_SANITIZE)
+  # The libraries are linked into the Python module, a shared one. Nobody replaces their functions when it is loaded.
+  target_compile_options(continuo_flags INTERFACE -fPIC -fno-semantic-interposition)
+endif()
 if(CONTINUO_NATIVE)
   target_compile_options(continuo_flags INTERFACE -march=native)
 endif()

@@ -26,7 +26,18 @@ packages_to_document=(
   "python3                python3      builds the pages"
   "python3-markdown       -            Markdown as HTML"
 )
+packages_for_python=(
+  "python3                python3      runs the module"
+  "python3-dev            -            its headers"
+  "pybind11-dev           -            calls C++ from Python"
+  "python3-numpy          -            arrays"
+)
 packages_to_test=(
+  "python3-pytest         -            the tests of the Python module"
+  "python3-matplotlib     -            its plots"
+  "python3-nbclient       -            runs its notebooks"
+  "python3-ipykernel      -            what they run in"
+  "mypy                   mypy         judges its types"
   "libgtest-dev           -            unit tests"
   "libgmock-dev           -            unit tests"
   "chromium               chromium     the live view's page, tested in a browser"
@@ -55,11 +66,14 @@ package_is_there() {  # package command
 # The distribution's Python, for which its packages are installed, even if another one is first in the path.
 python_of_packages() { if [[ -x /usr/bin/python3 ]]; then echo /usr/bin/python3; else echo python3; fi; }
 
-# setup_packages build|docs|test: installs what is missing, after saying what and why.
+# setup_packages build|docs|python|test: installs what is missing, after saying what and why.
 setup_packages() {
   local rows=("${packages_to_build[@]}") row package proof why missing=()
-  if [[ $1 != build ]]; then rows+=("${packages_to_document[@]}"); fi
-  if [[ $1 == test ]]; then rows+=("${packages_to_test[@]}"); fi
+  case $1 in
+    docs) rows+=("${packages_to_document[@]}") ;;
+    python) rows+=("${packages_for_python[@]}") ;;
+    test) rows+=("${packages_to_document[@]}" "${packages_for_python[@]}" "${packages_to_test[@]}") ;;
+  esac
   if ! command -v dpkg-query >/dev/null 2>&1; then
     say "this system has no Debian packages; the build needs (names as on Debian):"
     for row in "${rows[@]}"; do read -r package proof why <<<"$row"; printf '  %-20s %s\n' "$package" "$why" >&2; done
@@ -123,10 +137,22 @@ setup_program() {
   setup_build "$build" "$program" "$stamp"
 }
 
-# setup_build FOLDER TARGET STAMP: builds one target; the stamp carries the time at which the build began, so that a
+# setup_python: builds the Python module in the folder that `build` names, as setup_program does the command.
+setup_python() {
+  local stamp=$build/.built_python
+  if [[ -e $build/python/continuo/_continuo.so && -e $stamp ]] &&
+     [[ -z $(find "$root/continuo" "$root/python" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
+               -name __pycache__ -prune -o -newer "$stamp" ! -name '*.md' ! -name '*.pyc' -print -quit) ]]; then
+    return 0
+  fi
+  setup_packages python
+  setup_build "$build" continuo_python "$stamp" -DCONTINUO_PYTHON=ON
+}
+
+# setup_build FOLDER TARGET STAMP [OPTION]: builds one target; the stamp carries the time at which the build began, so that a
 # file changed while it ran counts as newer.
 setup_build() {
-  local build=$1 target=$2 stamp=$3
+  local build=$1 target=$2 stamp=$3 option=${4-}
   mkdir -p "$build"
   exec {lock}>"$build/.lock"
   flock "$lock"  # two calls at once build once
@@ -137,6 +163,10 @@ setup_build() {
       say "the build could not be configured"
       exit 1
     fi
+  fi
+  if [[ -n $option ]] && ! quietly "$build/.log" cmake -B "$build" "$option"; then
+    say "the build could not be configured"
+    exit 1
   fi
   if ! quietly "$build/.log" cmake --build "$build" --target "$target"; then
     say "the build failed; the lines above say where"

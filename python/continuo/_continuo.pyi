@@ -1,0 +1,3 @@
+"""What the package calls in C++."""
+
+__version__: str

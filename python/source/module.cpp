@@ -1,0 +1,7 @@
+// The module _continuo: what Python calls in C++, a part from each of the other sources.
+#include "parts.hpp"
+
+PYBIND11_MODULE(_continuo, module) {
+  module.doc() = "What the package continuo calls in C++.";
+  module.attr("__version__") = CONTINUO_VERSION;
+}

@@ -1,0 +1,3 @@
+// The parts of the module _continuo: each adds its classes and functions.
+#pragma once
+#include <pybind11/pybind11.h>
