@@ -11,7 +11,9 @@ Finished run_in(const std::filesystem::path& folder, const std::string& command)
   std::filesystem::create_directories(folder);
   // `2>&1` inside the group, so that both streams arrive in the order they were written.
   const std::string line = "cd '" + folder.string() +
-                           "' && export NO_COLOR=1 && continuo() { '" CONTINUO_COMMAND "' \"$@\"; }; python3() { '" +
+                           "' && export NO_COLOR=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" CONTINUO_PYTHON_MODULE
+                           "' CONTINUO_COMMAND='" CONTINUO_COMMAND "' && continuo() { '" CONTINUO_COMMAND
+                           "' \"$@\"; }; python3() { '" +
                            CONTINUO_PYTHON + "' \"$@\"; }; { " + command + "\n} 2>&1";
   std::FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no shell to run: " + command);
