@@ -166,6 +166,25 @@ TEST(SweepStudy, AModelThatFailsInAPartOfTheSpaceIsNoLostStudy) {
   EXPECT_THAT(rows.back(), HasSubstr(",nan"));
 }
 
+// The rights of a folder do not bind root, who becomes nobody for this.
+TEST(SweepStudy, AFolderThatIsNotWritableIsRefusedAtOnce) {
+  const Shell shell;
+  const std::string as_nobody =
+      geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups env HOME=/nonexistent" : "";
+  shell.write("swing.sim", swept_swing);
+  shell.call("mkdir locked; echo 'an older one' > locked/out.csv; chmod 555 locked; chmod 755 .");
+  if (shell.run("check swing.sim", as_nobody).exit != 0) GTEST_SKIP() << "nobody may not run the command here";
+  for (const char* arguments : {"-o locked/out.csv", "-o locked/new.nc", "-o locked/out.csv --part 1/3"}) {
+    const Result result = shell.run("sweep swing.sim " + std::string(arguments), as_nobody);
+    EXPECT_NE(result.exit, 0) << arguments;
+    EXPECT_THAT(result.err, HasSubstr("locked")) << arguments;
+    EXPECT_THAT(result.err, HasSubstr("Permission denied")) << arguments;
+    EXPECT_THAT(result.out, IsEmpty()) << arguments;
+  }
+  EXPECT_EQ(shell.read("locked/out.csv"), "an older one\n");
+  EXPECT_EQ(shell.call("ls -A locked").out, "out.csv\n");
+}
+
 TEST(SweepStudy, AFullDiskLosesNothing) {
   const Shell shell;
   if (shell.call("mkdir small && mount -t tmpfs -o size=24k none small").exit != 0) GTEST_SKIP() << "no mount here";
