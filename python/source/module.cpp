@@ -4,4 +4,5 @@
 PYBIND11_MODULE(_continuo, module) {
   module.doc() = "What the package continuo calls in C++.";
   module.attr("__version__") = CONTINUO_VERSION;
+  add_native(module);
 }

@@ -1,3 +1,5 @@
 // The parts of the module _continuo: each adds its classes and functions.
 #pragma once
 #include <pybind11/pybind11.h>
+
+void add_native(pybind11::module_& module);
