@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -22,6 +23,19 @@ template <class Real>
   using std::abs, std::max, std::sqrt;
   const Real moved = x + max(sqrt(std::numeric_limits<Real>::epsilon()) * abs(x), least);
   return moved - x;
+}
+
+/// Whether a system that has the members for df/dx gives it. A type whose values differ in this (an f of another
+/// language, with or without a Jacobian) says so by a member gives_jacobian(); else differences are taken.
+template <class F>
+[[nodiscard]] bool gives_jacobian(const F& f) {
+  if constexpr (requires {
+                  { f.gives_jacobian() } -> std::convertible_to<bool>;
+                }) {
+    return f.gives_jacobian();
+  } else {
+    return true;
+  }
 }
 
 /// df/dx row by row from the entries of its pattern, for a system that gives no other. `values` is scratch, which keeps
@@ -44,26 +58,29 @@ template <class F, State X, class Least>
 int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& moved, X& slope, const Least& least,
                       std::span<Scalar<X>> rows) {
   if constexpr (HasJacobian<F, X>) {
-    // A Jacobian that writes only its nonzero entries, or adds to them, is right only on zeros.
-    std::ranges::fill(rows, Scalar<X>(0));
-    f.jacobian(t, x, rows);
-    return 0;
-  } else if constexpr (HasSparseJacobian<F, X>) {
-    std::vector<Scalar<X>> values;
-    scatter_jacobian_values(f, t, x, values, rows);
-    return 0;
-  } else {
-    const std::size_t n = dimension(x);
-    moved = x;
-    for (std::size_t j = 0; j < n; ++j) {
-      const Scalar<X> increment = difference_increment(x.data()[j], least(j));
-      moved.data()[j] = x.data()[j] + increment;
-      evaluate(f, t, moved, slope);
-      moved.data()[j] = x.data()[j];
-      for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = (slope.data()[i] - fx.data()[i]) / increment;
+    if (gives_jacobian(f)) {
+      // A Jacobian that writes only its nonzero entries, or adds to them, is right only on zeros.
+      std::ranges::fill(rows, Scalar<X>(0));
+      f.jacobian(t, x, rows);
+      return 0;
     }
-    return static_cast<int>(n);
+  } else if constexpr (HasSparseJacobian<F, X>) {
+    if (gives_jacobian(f)) {
+      std::vector<Scalar<X>> values;
+      scatter_jacobian_values(f, t, x, values, rows);
+      return 0;
+    }
   }
+  const std::size_t n = dimension(x);
+  moved = x;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Scalar<X> increment = difference_increment(x.data()[j], least(j));
+    moved.data()[j] = x.data()[j] + increment;
+    evaluate(f, t, moved, slope);
+    moved.data()[j] = x.data()[j];
+    for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = (slope.data()[i] - fx.data()[i]) / increment;
+  }
+  return static_cast<int>(n);
 }
 
 /// The nonzero entries of df/dx, in the order of the pattern: given, or by differences, one evaluation for each group
@@ -72,24 +89,25 @@ template <class F, State X, class Least>
 int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& moved, X& slope, const Least& least,
                       const SparsePattern& pattern, const ColumnGroups& groups, std::span<Scalar<X>> values) {
   if constexpr (HasSparseJacobian<F, X>) {
-    std::ranges::fill(values, Scalar<X>(0));
-    f.jacobian_values(t, x, values);
-    return 0;
-  } else {
-    moved = x;
-    for (std::size_t g = 0; g < groups.count(); ++g) {
-      for (const std::size_t j : groups.group(g))
-        moved.data()[j] = x.data()[j] + difference_increment(x.data()[j], least(j));
-      evaluate(f, t, moved, slope);
-      for (const std::size_t j : groups.group(g)) {
-        const Scalar<X> increment = moved.data()[j] - x.data()[j];
-        for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p)
-          values[p] = (slope.data()[pattern.row(p)] - fx.data()[pattern.row(p)]) / increment;
-        moved.data()[j] = x.data()[j];
-      }
+    if (gives_jacobian(f)) {
+      std::ranges::fill(values, Scalar<X>(0));
+      f.jacobian_values(t, x, values);
+      return 0;
     }
-    return static_cast<int>(groups.count());
   }
+  moved = x;
+  for (std::size_t g = 0; g < groups.count(); ++g) {
+    for (const std::size_t j : groups.group(g))
+      moved.data()[j] = x.data()[j] + difference_increment(x.data()[j], least(j));
+    evaluate(f, t, moved, slope);
+    for (const std::size_t j : groups.group(g)) {
+      const Scalar<X> increment = moved.data()[j] - x.data()[j];
+      for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p)
+        values[p] = (slope.data()[pattern.row(p)] - fx.data()[pattern.row(p)]) / increment;
+      moved.data()[j] = x.data()[j];
+    }
+  }
+  return static_cast<int>(groups.count());
 }
 
 /// df/dt; h says how fast time goes. Returns the number of evaluations.

@@ -103,7 +103,7 @@ concept SecondOrder = requires(const F& f, std::size_t size) {
 template <class F, class X>
 concept HasJacobian = requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> rows) { f.jacobian(t, x, rows); };
 
-/// The system knows where df/dx may differ from zero. The pattern must hold the run long.
+/// The system knows where df/dx may differ from zero. The pattern must hold the run long; an empty one says nothing.
 template <class F>
 concept HasJacobianPattern = requires(F& f) {
   { f.jacobian_pattern() } -> std::convertible_to<const SparsePattern&>;

@@ -2,4 +2,5 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+void add_light_state(pybind11::module_& module);
 void add_native(pybind11::module_& module);

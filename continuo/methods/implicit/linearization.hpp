@@ -64,13 +64,13 @@ class Linearization {
                     "the pattern of the Jacobian of a system of run-time size needs the sparse solver KLU: install "
                     "libsuitesparse-dev (SuiteSparse)");
       pattern_ = f.jacobian_pattern();
-      sparse_ = own() || (!mass_.is_matrix() && size_ >= least_sparse_size &&
+      sparse_ = own() || (!mass_.is_matrix() && size_ >= least_sparse_size && pattern_.size() == size_ &&
                           static_cast<double>(pattern_.entries()) <=
                               greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_));
       if (sparse_) {
         solver_ = &klu;
         rows_.assign(pattern_.entries(), 0);
-        if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
+        if (!HasSparseJacobian<F, X> || !gives_jacobian(f)) groups_ = ColumnGroups(pattern_);
         banded_ = !own() && pattern_.is_banded();
         if (banded_) prepare_band();
         diagonal_.resize(size_);

@@ -158,7 +158,7 @@ template <class System, State X>
 template <class System, State X>
 [[nodiscard]] std::string problem_of_pattern(System& system, const X& x) {
   if constexpr (HasJacobianPattern<System>) {
-    if (const std::size_t size = system.jacobian_pattern().size(); size != dimension(x))
+    if (const std::size_t size = system.jacobian_pattern().size(); size != 0 && size != dimension(x))
       return "the pattern of the Jacobian is one of " + std::to_string(size) + " components, and the state has " +
              std::to_string(dimension(x));
   }

@@ -1,0 +1,91 @@
+// Runs of foreign systems: the driver, and the method by its name.
+#include <tuple>
+#include <utility>
+
+#include <continuo/foreign/foreign_method.hpp>
+#include <continuo/foreign/foreign_run.hpp>
+#include <continuo/methods/all.hpp>
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo {
+namespace {
+
+using X = std::vector<double>;
+
+template <class System>
+class Run final : public ForeignRun {
+ public:
+  Run(System system, X x0, Interval<double> interval, AnyMethod<System, X> method, Options<X> options)
+      : integrator_(std::move(system), std::move(x0), interval, method, std::move(options)) {}
+
+  bool advance(ForeignRecord& record) override {
+    const bool goes_on = integrator_.advance(record);
+    record.step(integrator_.t(), integrator_.x());
+    return goes_on;
+  }
+  bool advance() override { return integrator_.advance(); }
+  [[nodiscard]] double t() const override { return integrator_.t(); }
+  [[nodiscard]] const X& x() const override { return integrator_.x(); }
+  [[nodiscard]] const Outcome<double>& outcome() const override { return integrator_.outcome(); }
+  [[nodiscard]] const Statistics& statistics() const override { return integrator_.statistics(); }
+  [[nodiscard]] std::span<const X> dense_output() override { return integrator_.dense_output(); }
+  [[nodiscard]] double step_begin() const override { return integrator_.step_begin(); }
+  [[nodiscard]] double step_size() const override { return integrator_.step_size(); }
+  void at(double t, X& x) override { integrator_.at(t, x); }
+  void set_state(const X& x) override { integrator_.set_state(x); }
+  void restart() override {
+    integrator_.change_system([](System&) {});
+  }
+  void extend_to(double to) override { integrator_.extend_to(to); }
+
+ private:
+  Integrator<System, X, AnyMethod<System, X>> integrator_;
+};
+
+using MethodsWithMatrix = std::tuple<Rodas5P, Radau5, Radau, Bdf>;
+
+template <class Methods, class System>
+[[nodiscard]] ForeignRun::Pointer begin(std::string_view name, std::shared_ptr<const ForeignFunctions> functions, X x0,
+                                        Interval<double> interval, Options<X> options) {
+  AnyMethod<System, X> method{nullptr};
+  for_each_method<Methods>([&]<class M>() {
+    if (M::name == name) method = foreign_method<M, System>();
+  });
+  if (!method.begin) return nullptr;
+  return std::make_unique<Run<System>>(System(std::move(functions)), std::move(x0), interval, method,
+                                       std::move(options));
+}
+
+}  // namespace
+
+void ForeignDense::evaluate(std::size_t piece, double t, double* x) const {
+  const Piece& of = pieces[piece];
+  if (t == of.end) {
+    std::copy_n(ends.data() + piece * size, size, x);
+    return;
+  }
+  const double theta = (t - of.origin) / of.h;
+  const double* c = coefficients.data() + (of.first + of.terms - 1) * size;
+  std::copy_n(c, size, x);
+  for (std::size_t j = of.terms - 1; j-- > 0;) {
+    c -= size;
+    for (std::size_t i = 0; i < size; ++i) x[i] = x[i] * theta + c[i];
+  }
+}
+
+ForeignRun::Pointer begin_foreign_run(std::shared_ptr<const ForeignFunctions> functions, X x0,
+                                      Interval<double> interval, std::string_view method, Options<X> options) {
+  const std::string_view name = canonical_name(method);
+  if (!functions->mass_rows.empty())
+    return begin<MethodsWithMatrix, ForeignSystemWithMatrix>(name, std::move(functions), std::move(x0), interval,
+                                                             std::move(options));
+  return begin<PlainMethods, ForeignSystem>(name, std::move(functions), std::move(x0), interval, std::move(options));
+}
+
+bool solves_with_matrix(std::string_view method) {
+  bool solves = false;
+  for_each_method<MethodsWithMatrix>([&]<class M>() { solves = solves || M::name == canonical_name(method); });
+  return solves;
+}
+
+}  // namespace continuo

@@ -1,0 +1,165 @@
+// continuo/foreign/foreign_run.hpp
+// A run of a foreign system by a method named at run time, step by step, and what it has recorded so far.
+//
+//   const auto run = begin_foreign_run(functions, {1, 0}, {0, 10}, "dop853", {.rtol = 1e-9});
+//   ForeignRecord record({.steps = true});
+//   while (run->advance(record)) {}
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <continuo/foreign/foreign_system.hpp>
+#include <continuo/solve/integrator.hpp>
+
+namespace continuo {
+
+/// The dense output of the steps of a run: polynomials one after another.
+struct ForeignDense {
+  /// One polynomial: x(t) = sum_j c_j theta^j, theta = (t - origin) / h, from begin to end.
+  struct Piece {
+    double begin, end, origin, h;
+    std::size_t first, terms;  // the number of its first coefficient in `coefficients`, and of its terms
+  };
+  std::size_t size = 0;
+  std::vector<Piece> pieces{};
+  std::vector<double> coefficients{};  // of each piece: c_0, then c_1, ..., each of `size` numbers
+  std::vector<double> ends{};          // x at the end of each piece: a polynomial gives it with a rounding
+
+  /// x at t, by a piece.
+  void evaluate(std::size_t piece, double t, double* x) const;
+};
+
+/// What a run has recorded.
+class ForeignRecord {
+ public:
+  using X = std::vector<double>;
+  struct Wanted {
+    bool steps = true;          // the state after every step, and on both sides of an event that changes it
+    bool dense = false;         // the polynomial of every step
+    std::vector<double> times;  // the states at these times, in the direction of time
+  };
+  struct Event {
+    std::size_t number;
+    double t;
+    X before, after;
+  };
+
+  explicit ForeignRecord(Wanted wanted) : wanted_(std::move(wanted)) {}
+
+  std::vector<double> t{}, x{};  // x: row after row
+  ForeignDense dense{};
+  std::vector<Event> events{};
+
+  /// The state at the beginning.
+  void begin(double time, const X& state) {
+    dense.size = state.size();
+    if (wanted_.steps) push(time, state);
+  }
+  /// A step has ended here.
+  void step(double time, const X& state) {
+    if (wanted_.steps && (t.empty() || time != t.back() || changed_)) push(time, state);
+    changed_ = false;
+  }
+  [[nodiscard]] const Wanted& wanted() const { return wanted_; }
+
+  // As an observer of the run.
+  template <class Run>
+  void on_segment(Run& run, double from, double to) {
+    if (!wanted_.times.empty()) save_times(run, to, false);
+    if (wanted_.dense) save_piece(run, from, to);
+  }
+  template <class Run>
+  void on_event(Run& run, const EventOccurrence<X>& occurrence) {
+    if (!occurred_) before_ = occurrence.before;
+    occurred_ = true;
+    changed_ = changed_ || occurrence.after != occurrence.before;
+    for (const std::size_t i : occurrence.events)
+      events.push_back({i, occurrence.t, occurrence.before, occurrence.after});
+    static_cast<void>(run);
+  }
+  template <class Run>
+  void on_instant(Run& run) {
+    if (occurred_ && changed_ && wanted_.steps && (t.empty() || t.back() != run.t())) push(run.t(), before_);
+    occurred_ = false;
+    if (!wanted_.times.empty()) save_times(run, run.t(), true);
+  }
+
+ private:
+  void push(double time, const X& state) {
+    t.push_back(time);
+    x.insert(x.end(), state.begin(), state.end());
+  }
+  // The states at the times up to `to`, or only those before it: what an event makes of the state is not known yet.
+  template <class Run>
+  void save_times(Run& run, double to, bool inclusive) {
+    const double forward = run.interval().to < run.interval().from ? -1 : 1;
+    for (; next_ < wanted_.times.size(); ++next_) {
+      const double time = wanted_.times[next_], left = forward * (to - time);
+      if (left < 0 || (left == 0 && !inclusive)) return;
+      scratch_.resize(run.x().size());
+      run.at(time, scratch_);
+      push(time, scratch_);
+    }
+  }
+  template <class Run>
+  void save_piece(Run& run, double from, double to) {
+    const double origin = run.step_begin(), h = run.step_size();
+    if (from == to) return;
+    if (dense.pieces.empty() || dense.pieces.back().end != from || dense.pieces.back().origin != origin ||
+        dense.pieces.back().h != h) {
+      const std::span<const X> c = run.dense_output();
+      dense.pieces.push_back({from, to, origin, h, dense.coefficients.size() / dense.size, c.size()});
+      for (const X& one : c) dense.coefficients.insert(dense.coefficients.end(), one.begin(), one.end());
+      dense.ends.resize(dense.ends.size() + dense.size);
+    }
+    dense.pieces.back().end = to;
+    std::copy(run.x().begin(), run.x().end(), dense.ends.end() - static_cast<std::ptrdiff_t>(dense.size));
+  }
+
+  Wanted wanted_;
+  std::size_t next_ = 0;  // of the times
+  bool occurred_ = false, changed_ = false;
+  X before_, scratch_;
+};
+
+/// A run, whatever its system and its method.
+class ForeignRun {
+ public:
+  using X = std::vector<double>;
+  using Pointer = std::unique_ptr<ForeignRun>;
+
+  virtual ~ForeignRun() = default;
+
+  /// Takes one step, as Driver::advance. True while the run has not ended.
+  virtual bool advance(ForeignRecord& record) = 0;
+  /// The same without a record.
+  virtual bool advance() = 0;
+  [[nodiscard]] virtual double t() const = 0;
+  [[nodiscard]] virtual const X& x() const = 0;
+  [[nodiscard]] virtual const Outcome<double>& outcome() const = 0;
+  [[nodiscard]] virtual const Statistics& statistics() const = 0;
+  /// The dense output of the last step, from step_begin() on over step_size().
+  [[nodiscard]] virtual std::span<const X> dense_output() = 0;
+  [[nodiscard]] virtual double step_begin() const = 0;
+  [[nodiscard]] virtual double step_size() const = 0;
+  /// x at a time of the last step.
+  virtual void at(double t, X& x) = 0;
+  /// As the members of Driver.
+  virtual void set_state(const X& x) = 0;
+  virtual void restart() = 0;
+  virtual void extend_to(double to) = 0;
+};
+
+/// Begins the run of these functions by the method of that name. Null where it has no such method: for a mass that is a
+/// full matrix there are radau5, radau, bdf and rodas5p.
+[[nodiscard]] ForeignRun::Pointer begin_foreign_run(std::shared_ptr<const ForeignFunctions> functions,
+                                                    std::vector<double> x0, Interval<double> interval,
+                                                    std::string_view method, Options<std::vector<double>> options);
+
+/// Whether begin_foreign_run knows this method for a mass that is a full matrix.
+[[nodiscard]] bool solves_with_matrix(std::string_view method);
+
+}  // namespace continuo
