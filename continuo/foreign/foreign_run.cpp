@@ -58,6 +58,17 @@ template <class Methods, class System>
 
 }  // namespace
 
+void ForeignDense::add(double begin, double end, double origin, double h, std::span<const X> terms, const X& x) {
+  pieces.push_back({begin, end, origin, h, size == 0 ? 0 : coefficients.size() / size, terms.size()});
+  for (const X& term : terms) coefficients.insert(coefficients.end(), term.begin(), term.end());
+  ends.insert(ends.end(), x.begin(), x.end());
+}
+
+void ForeignDense::add_constant(double begin, double end, const X& x) {
+  size = x.size();
+  add(begin, end, begin, 1, std::span(&x, 1), x);
+}
+
 void ForeignDense::evaluate(std::size_t piece, double t, double* x) const {
   const Piece& of = pieces[piece];
   if (t == of.end) {

@@ -5,10 +5,12 @@
 //   ForeignRecord record({.steps = true});
 //   while (run->advance(record)) {}
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <continuo/foreign/foreign_system.hpp>
@@ -28,6 +30,11 @@ struct ForeignDense {
   std::vector<double> coefficients{};  // of each piece: c_0, then c_1, ..., each of `size` numbers
   std::vector<double> ends{};          // x at the end of each piece: a polynomial gives it with a rounding
 
+  /// Adds a piece with these coefficients, which ends at x.
+  void add(double begin, double end, double origin, double h, std::span<const std::vector<double>> terms,
+           const std::vector<double>& x);
+  /// Adds one on which x stays.
+  void add_constant(double begin, double end, const std::vector<double>& x);
   /// x at t, by a piece.
   void evaluate(std::size_t piece, double t, double* x) const;
 };
@@ -63,7 +70,12 @@ class ForeignRecord {
     if (wanted_.steps && (t.empty() || time != t.back() || changed_)) push(time, state);
     changed_ = false;
   }
-  [[nodiscard]] const Wanted& wanted() const { return wanted_; }
+  /// A run of no length, or of no components, ends here.
+  void end_at(double time, const X& state) {
+    if (wanted_.steps) push(time, state);
+    for (const double one : wanted_.times) push(one, state);
+    if (wanted_.dense) dense.add_constant(t.empty() ? time : t.front(), time, state);
+  }
 
   // As an observer of the run.
   template <class Run>
@@ -108,15 +120,15 @@ class ForeignRecord {
   void save_piece(Run& run, double from, double to) {
     const double origin = run.step_begin(), h = run.step_size();
     if (from == to) return;
-    if (dense.pieces.empty() || dense.pieces.back().end != from || dense.pieces.back().origin != origin ||
-        dense.pieces.back().h != h) {
-      const std::span<const X> c = run.dense_output();
-      dense.pieces.push_back({from, to, origin, h, dense.coefficients.size() / dense.size, c.size()});
-      for (const X& one : c) dense.coefficients.insert(dense.coefficients.end(), one.begin(), one.end());
-      dense.ends.resize(dense.ends.size() + dense.size);
+    if (!dense.pieces.empty()) {
+      ForeignDense::Piece& last = dense.pieces.back();
+      if (last.end == from && last.origin == origin && last.h == h) {
+        last.end = to;
+        std::copy(run.x().begin(), run.x().end(), dense.ends.end() - static_cast<std::ptrdiff_t>(dense.size));
+        return;
+      }
     }
-    dense.pieces.back().end = to;
-    std::copy(run.x().begin(), run.x().end(), dense.ends.end() - static_cast<std::ptrdiff_t>(dense.size));
+    dense.add(from, to, origin, h, run.dense_output(), run.x());
   }
 
   Wanted wanted_;

@@ -4,6 +4,8 @@
 PYBIND11_MODULE(_continuo, module) {
   module.doc() = "What the package continuo calls in C++.";
   module.attr("__version__") = CONTINUO_VERSION;
+  add_dense_solution(module);
   add_light_state(module);
   add_native(module);
+  add_run(module);
 }
