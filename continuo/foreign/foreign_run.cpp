@@ -1,4 +1,6 @@
 // Runs of foreign systems: the driver, and the method by its name.
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -6,6 +8,8 @@
 #include <continuo/foreign/foreign_run.hpp>
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/catalogue.hpp>
+#include <continuo/solve/steps/first_step.hpp>
+#include <continuo/system/mass.hpp>
 
 namespace continuo {
 namespace {
@@ -15,19 +19,25 @@ using X = std::vector<double>;
 template <class System>
 class Run final : public ForeignRun {
  public:
-  Run(System system, X x0, Interval<double> interval, AnyMethod<System, X> method, Options<X> options)
-      : integrator_(std::move(system), std::move(x0), interval, method, std::move(options)) {}
+  Run(System system, X x0, Interval<double> interval, AnyMethod<System, X> method, Options<X> options,
+      std::size_t evaluations)
+      : integrator_(std::move(system), std::move(x0), interval, method, std::move(options)),
+        evaluations_before_(evaluations) {}
 
   bool advance(ForeignRecord& record) override {
     const bool goes_on = integrator_.advance(record);
-    record.step(integrator_.t(), integrator_.x());
+    record.step(integrator_.t(), integrator_.x(), integrator_.outcome().ending == Ending::stopped_by_event);
     return goes_on;
   }
   bool advance() override { return integrator_.advance(); }
   [[nodiscard]] double t() const override { return integrator_.t(); }
   [[nodiscard]] const X& x() const override { return integrator_.x(); }
   [[nodiscard]] const Outcome<double>& outcome() const override { return integrator_.outcome(); }
-  [[nodiscard]] const Statistics& statistics() const override { return integrator_.statistics(); }
+  [[nodiscard]] Statistics statistics() const override {
+    Statistics statistics = integrator_.statistics();
+    statistics.evaluations += evaluations_before_;
+    return statistics;
+  }
   [[nodiscard]] std::span<const X> dense_output() override { return integrator_.dense_output(); }
   [[nodiscard]] double step_begin() const override { return integrator_.step_begin(); }
   [[nodiscard]] double step_size() const override { return integrator_.step_size(); }
@@ -40,7 +50,24 @@ class Run final : public ForeignRun {
 
  private:
   Integrator<System, X, AnyMethod<System, X>> integrator_;
+  std::size_t evaluations_before_;
 };
+
+// BDF begins with order 1: a first step for its greatest order would be rejected, and cost a Jacobian more. Returns the
+// number of evaluations.
+template <class System>
+[[nodiscard]] std::size_t set_first_step(System system, const X& x0, const Interval<double>& interval,
+                                         Options<X>& options) {
+  if (options.first_step > 0 || options.step > 0 || has_mass<X>(system)) return 0;
+  const double forward = interval.to < interval.from ? -1 : 1;
+  const double longest = std::min(std::abs(interval.to - interval.from), options.max_step);
+  X slope = x0, scratch = x0, further = x0;
+  evaluate(system, interval.from, x0, slope);
+  if (!detail::is_finite_state(slope)) return 1;  // the run says what is wrong
+  options.first_step = std::abs(
+      first_step(system, interval.from, x0, slope, 1, forward, longest, tolerance_of(options), scratch, further));
+  return 2;
+}
 
 using MethodsWithMatrix = std::tuple<Rodas5P, Radau5, Radau, Bdf>;
 
@@ -52,8 +79,10 @@ template <class Methods, class System>
     if (M::name == name) method = foreign_method<M, System>();
   });
   if (!method.begin) return nullptr;
-  return std::make_unique<Run<System>>(System(std::move(functions)), std::move(x0), interval, method,
-                                       std::move(options));
+  System system(std::move(functions));
+  const std::size_t evaluations = name == Bdf::name ? set_first_step(system, x0, interval, options) : 0;
+  return std::make_unique<Run<System>>(std::move(system), std::move(x0), interval, method, std::move(options),
+                                       evaluations);
 }
 
 }  // namespace

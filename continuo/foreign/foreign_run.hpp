@@ -6,7 +6,9 @@
 //   while (run->advance(record)) {}
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -66,9 +68,15 @@ class ForeignRecord {
     if (wanted_.steps) push(time, state);
   }
   /// A step has ended here.
-  void step(double time, const X& state) {
+  void step(double time, const X& state, bool ended_by_event) {
     if (wanted_.steps && (t.empty() || time != t.back() || changed_)) push(time, state);
     changed_ = false;
+    // A run that an event has ended, ends where the event is said to be.
+    if (wanted_.steps && !events.empty() && ended_by_event && t.back() == time && moved_from_ == time) {
+      t.back() = events.back().t;
+      std::copy(events.back().before.begin(), events.back().before.end(),
+                x.end() - static_cast<std::ptrdiff_t>(state.size()));
+    }
   }
   /// A run of no length, or of no components, ends here.
   void end_at(double time, const X& state) {
@@ -88,9 +96,10 @@ class ForeignRecord {
     if (!occurred_) before_ = occurrence.before;
     occurred_ = true;
     changed_ = changed_ || occurrence.after != occurrence.before;
-    for (const std::size_t i : occurrence.events)
+    for (const std::size_t i : occurrence.events) {
       events.push_back({i, occurrence.t, occurrence.before, occurrence.after});
-    static_cast<void>(run);
+      if (occurrence.after == occurrence.before) move_to_root(run, events.back());
+    }
   }
   template <class Run>
   void on_instant(Run& run) {
@@ -100,6 +109,22 @@ class ForeignRecord {
   }
 
  private:
+  // An event lies just beyond its root, so that the motion goes on from there on the right side of it. One that
+  // changes nothing is noted one number before, where its guard is nearer to zero: at 7 for t - 7.
+  template <class Run>
+  void move_to_root(Run& run, Event& event) {
+    if (event.t == run.step_begin() || !run.events().is_guard(event.number)) return;
+    const double before = std::nextafter(event.t, run.step_begin());
+    std::vector<double> here(run.events().size()), there(here.size());
+    X state = event.before;
+    run.events().guards(run.system(), event.t, state, here);
+    run.at(before, state);
+    run.events().guards(run.system(), before, state, there);
+    if (!(std::abs(there[event.number]) < std::abs(here[event.number]))) return;
+    moved_from_ = event.t;
+    event.t = before;
+    event.before = event.after = state;
+  }
   void push(double time, const X& state) {
     t.push_back(time);
     x.insert(x.end(), state.begin(), state.end());
@@ -134,6 +159,7 @@ class ForeignRecord {
   Wanted wanted_;
   std::size_t next_ = 0;  // of the times
   bool occurred_ = false, changed_ = false;
+  double moved_from_ = std::numeric_limits<double>::quiet_NaN();  // the time of the last event that was
   X before_, scratch_;
 };
 
@@ -152,7 +178,7 @@ class ForeignRun {
   [[nodiscard]] virtual double t() const = 0;
   [[nodiscard]] virtual const X& x() const = 0;
   [[nodiscard]] virtual const Outcome<double>& outcome() const = 0;
-  [[nodiscard]] virtual const Statistics& statistics() const = 0;
+  [[nodiscard]] virtual Statistics statistics() const = 0;
   /// The dense output of the last step, from step_begin() on over step_size().
   [[nodiscard]] virtual std::span<const X> dense_output() = 0;
   [[nodiscard]] virtual double step_begin() const = 0;

@@ -207,7 +207,7 @@ class BDF(OdeSolver):
 
 
 class LSODA(OdeSolver):
-    """A method that switches to a stiff one where needed, chosen by the problem."""
+    """An explicit method of order 5 that switches to BDF where the system is stiff."""
 
     _method = "LSODA"
     _checks_at_start = False

@@ -156,12 +156,23 @@ void Run::run() {
   if (!progress_.is_none() && progress_) report_progress(true);
 }
 
-bool Run::advance() {
+template <class Advance>
+bool Run::advance_by(Advance&& take_step) {
   const double before = run_->t();
-  const bool goes_on = run_->advance(record_);
+  // SciPy asks for ten times the spacing.
+  if (settings_.max_step <
+      10 * (std::nextafter(std::abs(before), std::numeric_limits<double>::infinity()) - std::abs(before))) {
+    below_spacing_ = true;
+    return false;
+  }
+  const bool goes_on = take_step();
   if (control_.failed()) return false;
   if (settings_.min_step > 0 && goes_on && is_below_min_step(before)) below_min_step_ = true;
   return goes_on && !below_min_step_;
+}
+
+bool Run::advance() {
+  return advance_by([this] { return run_->advance(record_); });
 }
 
 void Run::run_with_gil() {
@@ -207,12 +218,7 @@ void Run::report_progress(bool at_end) {
 
 bool Run::step() {
   if (!run_ || control_.failed()) return false;
-  const double before = run_->t();
-  const auto advanced = [&] {
-    const bool goes_on = run_->advance();
-    if (settings_.min_step > 0 && goes_on && is_below_min_step(before)) below_min_step_ = true;
-    return goes_on && !below_min_step_;
-  };
+  const auto advanced = [&] { return advance_by([this] { return run_->advance(); }); };
   bool goes_on = false;
   if (holds_gil_) {
     goes_on = advanced();

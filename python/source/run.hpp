@@ -83,6 +83,8 @@ class Run {
   [[nodiscard]] std::string reason_of_matrix() const;
   void run_with_gil();
   void run_without_gil();
+  template <class Advance>
+  bool advance_by(Advance&& take_step);
   bool advance();
   void report_progress(bool at_end);
   [[nodiscard]] bool is_below_min_step(double t_before) const;
@@ -111,7 +113,7 @@ class Run {
   double last_progress_ = 0;
   double end_without_run_ = 0;
   std::size_t checks_ = 0;  // evaluations of f by check
-  bool holds_gil_ = true, has_python_ = false, second_order_ = false, below_min_step_ = false;
+  bool holds_gil_ = true, has_python_ = false, second_order_ = false, below_min_step_ = false, below_spacing_ = false;
 };
 
 }  // namespace continuo::python

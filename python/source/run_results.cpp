@@ -75,6 +75,12 @@ const Outcome<double>& Run::outcome() const {
 Statistics Run::statistics() const {
   Statistics statistics = run_ ? run_->statistics() : Statistics{};
   statistics.evaluations += checks_;
+  // As SciPy counts: without those for differences.
+  const ForeignFunctions& f = *functions_;
+  if (!f.jacobian.call && !f.jacobian_values.call) {
+    const std::size_t each = f.pattern.size() == 0 ? f.size : ColumnGroups(f.pattern).count();
+    statistics.evaluations -= std::min(statistics.evaluations, statistics.jacobians * each);
+  }
   return statistics;
 }
 
@@ -87,6 +93,11 @@ py::tuple Run::summary() const {
   std::string message = text;
   if (outcome.ending == Ending::step_too_small || outcome.ending == Ending::too_many_rejects)
     message = "Required step size is less than spacing between numbers: " + text;
+  if (below_spacing_) {
+    status = -1;
+    text = "max_step is less than the spacing between numbers at t = " + std::to_string(run_->t());
+    message = "Required step size is less than spacing between numbers: " + text;
+  }
   if (below_min_step_) {
     status = -1;
     message = text = "the step that the tolerance needs is below min_step at t = " + std::to_string(run_->t());
