@@ -1,15 +1,18 @@
 """Continuo simulates continuous systems: SciPy's interface to its integrators, models as text, and rigid bodies."""
 
 from ._continuo import __version__
+from .boundary_values import BVPResult, CubicSolution, solve_bvp
 from .dense import DenseOutput, OdeSolution
 from .errors import Interrupted
 from .events import Event
 from .ivp import solve_ivp
 from .result import OdeResult
-from .solvers import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
+from .solvers import BDF, DOP853, LSODA, OdeSolver, RK23, RK45, Radau
 
 __all__ = [
     "BDF",
+    "BVPResult",
+    "CubicSolution",
     "DOP853",
     "DenseOutput",
     "Event",
@@ -22,5 +25,6 @@ __all__ = [
     "RK45",
     "Radau",
     "__version__",
+    "solve_bvp",
     "solve_ivp",
 ]

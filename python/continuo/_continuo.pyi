@@ -88,3 +88,29 @@ def choose_method(
     sparse: bool = False,
     banded: bool = False,
 ) -> str: ...
+from collections.abc import Callable
+from typing import Any
+
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+def solve_bvp(
+    fun: Callable[..., ArrayLike],
+    bc: Callable[..., ArrayLike],
+    x: NDArray[Any],
+    y: NDArray[Any],
+    p: NDArray[Any],
+    S: NDArray[Any],
+    first_value: NDArray[Any],
+    first_derivative: NDArray[Any],
+    fun_jac: Callable[..., Any] | None,
+    bc_jac: Callable[..., Any] | None,
+    tol: float,
+    bc_tol: float,
+    max_nodes: int,
+    progress: Callable[[int, float, float, int, int, bool], None] | None,
+) -> dict[str, Any]: ...
+def evaluate_cubics(
+    x: NDArray[Any], c: NDArray[Any], points: NDArray[Any], nu: int, extrapolate: bool
+) -> NDArray[Any]: ...

@@ -1,4 +1,4 @@
-"""The result of solve_ivp: a dictionary whose items are attributes, printed as SciPy's."""
+"""What the solvers return: a dictionary whose entries are attributes as well, printed as SciPy's."""
 
 from __future__ import annotations
 
@@ -17,7 +17,47 @@ def _number(x: float) -> str:
     return np.format_float_scientific(x, precision=3, pad_left=2, unique=False)
 
 
-class OdeResult(dict[str, Any]):
+class Result(dict[str, Any]):
+    """A dictionary with its entries as attributes, as the results of SciPy are.
+
+    Examples
+    --------
+    >>> Result(status=0, success=True).success
+    True
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"a {type(self).__name__} has no entry {name!r}: {', '.join(self)}") from None
+
+    __setattr__ = dict.__setitem__
+    __delattr__ = dict.__delitem__
+
+    def __dir__(self) -> list[str]:
+        return list(self.keys())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (), None, None, iter(self.items())
+
+    def __repr__(self) -> str:
+        if not self:
+            return type(self).__name__ + "()"
+        order = ("message", "outcome", "success", "status", "t", "y", "sol", "t_events", "y_events")
+        keys = [key for key in order if key in self] + [key for key in self if key not in order]
+        width = max(map(len, keys)) + 1
+        lines = []
+        for key in keys:
+            with np.printoptions(
+                linewidth=76 - width, edgeitems=2, threshold=12, formatter={"float_kind": _number}
+            ):
+                text = str(self[key])
+            lines.append(key.rjust(width) + ": " + text.replace("\n", "\n" + " " * (width + 2)))
+        return "\n".join(lines)
+
+
+class OdeResult(Result):
     """The result of a run.
 
     Attributes
@@ -45,33 +85,3 @@ class OdeResult(dict[str, Any]):
     success : bool
         Whether ``status >= 0``.
     """
-
-    def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(name) from None
-
-    __setattr__ = dict.__setitem__
-    __delattr__ = dict.__delitem__
-
-    def __dir__(self) -> list[str]:
-        return list(self.keys())
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (), None, None, iter(self.items())
-
-    def __repr__(self) -> str:
-        if not self:
-            return type(self).__name__ + "()"
-        order = ("message", "outcome", "success", "status", "t", "y", "sol", "t_events", "y_events")
-        keys = [key for key in order if key in self] + [key for key in self if key not in order]
-        width = max(map(len, keys)) + 1
-        lines = []
-        for key in keys:
-            with np.printoptions(
-                linewidth=76 - width, edgeitems=2, threshold=12, formatter={"float_kind": _number}
-            ):
-                text = str(self[key])
-            lines.append(key.rjust(width) + ": " + text.replace("\n", "\n" + " " * (width + 2)))
-        return "\n".join(lines)

@@ -8,4 +8,5 @@ PYBIND11_MODULE(_continuo, module) {
   add_light_state(module);
   add_native(module);
   add_run(module);
+  add_solve_bvp(module);
 }

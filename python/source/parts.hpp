@@ -6,3 +6,4 @@ void add_dense_solution(pybind11::module_& module);
 void add_light_state(pybind11::module_& module);
 void add_native(pybind11::module_& module);
 void add_run(pybind11::module_& module);
+void add_solve_bvp(pybind11::module_& module);

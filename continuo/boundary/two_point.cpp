@@ -1,0 +1,156 @@
+// Newton's iteration on one mesh after the other, until the residuals are below the tolerances.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <continuo/boundary/number_size.hpp>
+#include <continuo/boundary/two_point.hpp>
+#include <continuo/boundary/two_point_equations.hpp>
+
+namespace continuo::boundary {
+
+namespace {
+
+constexpr std::size_t most_meshes_for_conditions = 10;
+constexpr double much_too_large = 100;  // times the tolerance: such intervals are cut in three, not in two
+
+/// Into how many parts each interval is to be cut.
+std::vector<std::size_t> parts_of_intervals(const std::vector<double>& residuals, double tolerance) {
+  std::vector<std::size_t> parts;
+  for (const double residual : residuals)
+    parts.push_back(residual >= much_too_large * tolerance ? 3 : residual > tolerance ? 2 : 1);
+  return parts;
+}
+
+/// The nodes within an interval.
+std::vector<double> inner_nodes(double first, double last, std::size_t parts) {
+  if (parts == 2) return {0.5 * (first + last)};
+  if (parts == 3) return {(2 * first + last) / 3, (first + 2 * last) / 3};
+  return {};
+}
+
+template <class Number>
+class TwoPointSearch {
+ public:
+  TwoPointSearch(const TwoPointProblem<Number>& problem, const TwoPointOptions& options)
+      : problem_(problem), options_(options) {}
+
+  TwoPointSolution<Number> operator()(std::vector<double> x, std::vector<Number> y, std::vector<Number> p) {
+    TwoPointFunctions<Number> functions(problem_, x.front());
+    functions.restrict_first(std::span(y).first(problem_.size));
+    solution_.x = std::move(x);
+    for (;;) {
+      std::vector<Number> z(std::move(y));
+      z.insert(z.end(), p.begin(), p.end());
+      TwoPointEquations<Number> equations(functions, solution_.x, std::move(z));
+      const bool begins = equations.is_finite(solution_);
+      const NewtonEnding ending =
+          begins ? equations.iterate(options_.tolerance, options_.condition_tolerance) : NewtonEnding::not_finite;
+      keep(equations, begins);
+      if (is_done(equations, ending, begins)) return std::move(solution_);
+      p = solution_.p;
+      y = refine(equations);
+      if (y.empty()) return std::move(solution_);
+    }
+  }
+
+ private:
+  void keep(TwoPointEquations<Number>& equations, bool has_values) {
+    solution_.y.assign(equations.y().begin(), equations.y().end());
+    solution_.p.assign(equations.p().begin(), equations.p().end());
+    solution_.f = equations.f();
+    solution_.residuals = has_values ? equations.residuals()
+                                     : std::vector(solution_.x.size() - 1, std::numeric_limits<double>::quiet_NaN());
+    TwoPointProgress& last = solution_.last;
+    ++last.iteration;
+    last.nodes = solution_.x.size();
+    last.residual = std::ranges::max(solution_.residuals);
+    last.condition = 0;
+    for (const Number& g : equations.conditions()) last.condition = std::max(last.condition, size_of(g));
+  }
+
+  /// Whether the search ends here; else `parts_` says how the mesh is to be refined.
+  bool is_done(TwoPointEquations<Number>& equations, NewtonEnding newton, bool begins) {
+    using enum TwoPointEnding;
+    if (newton == NewtonEnding::singular) return end(singular);
+    if (newton == NewtonEnding::not_finite) {
+      if (begins) solution_.not_finite = TwoPointQuantity::jacobian;
+      return end(not_finite);
+    }
+    if (!equations.is_finite(solution_)) return end(not_finite);
+    const auto strange = std::ranges::find_if_not(solution_.residuals, [](double r) { return std::isfinite(r); });
+    if (strange != solution_.residuals.end()) {
+      solution_.not_finite = TwoPointQuantity::derivative;
+      solution_.where = solution_.x[static_cast<std::size_t>(strange - solution_.residuals.begin())];
+      return end(not_finite);
+    }
+    parts_ = parts_of_intervals(solution_.residuals, options_.tolerance);
+    TwoPointProgress& last = solution_.last;
+    last.added = 0;
+    for (const std::size_t parts : parts_) last.added += parts - 1;
+    last.exceeds = last.nodes + last.added > options_.most_nodes;
+    if (options_.progress) options_.progress(last);
+    if (last.exceeds) return end(too_many_nodes);
+    if (last.added > 0) return false;
+    if (last.condition <= options_.condition_tolerance) return end(solved);
+    return last.iteration >= most_meshes_for_conditions && end(conditions_not_met);
+  }
+  bool end(TwoPointEnding ending) {
+    solution_.ending = ending;
+    return true;
+  }
+
+  /// The mesh refined, and y there by the spline; empty where nodes would be equal in the digits of a double.
+  std::vector<Number> refine(const TwoPointEquations<Number>& equations) {
+    const std::size_t n = problem_.size;
+    std::vector<double> x{solution_.x.front()};
+    std::vector<Number> y(solution_.y.begin(), solution_.y.begin() + static_cast<std::ptrdiff_t>(n));
+    for (std::size_t k = 0; k + 1 < solution_.x.size(); ++k) {
+      const double first = solution_.x[k], last = solution_.x[k + 1];
+      for (const double node : inner_nodes(first, last, parts_[k])) {
+        x.push_back(node);
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto c = equations.spline(k, i);
+          const double s = node - first;
+          y.push_back(((c[0] * s + c[1]) * s + c[2]) * s + c[3]);
+        }
+      }
+      x.push_back(last);
+      const Number* const at_last = solution_.y.data() + (k + 1) * n;
+      y.insert(y.end(), at_last, at_last + n);
+    }
+    const auto equal =
+        std::ranges::adjacent_find(x, [](double a, double b) { return !(a + (b - a) / 4 > a && b > a); });
+    if (equal != x.end()) {
+      solution_.where = *equal;
+      end(TwoPointEnding::too_fine);
+      return {};
+    }
+    solution_.x = std::move(x);
+    return y;
+  }
+
+  const TwoPointProblem<Number>& problem_;
+  const TwoPointOptions& options_;
+  TwoPointSolution<Number> solution_;
+  std::vector<std::size_t> parts_;
+};
+
+}  // namespace
+
+template <class Number>
+TwoPointSolution<Number> solve_two_point(const TwoPointProblem<Number>& problem, std::vector<double> x,
+                                         std::vector<Number> y, std::vector<Number> p, const TwoPointOptions& options) {
+  return TwoPointSearch<Number>(problem, options)(std::move(x), std::move(y), std::move(p));
+}
+
+template TwoPointSolution<double> solve_two_point(const TwoPointProblem<double>&, std::vector<double>,
+                                                  std::vector<double>, std::vector<double>, const TwoPointOptions&);
+template TwoPointSolution<ComplexNumber<double>> solve_two_point(const TwoPointProblem<ComplexNumber<double>>&,
+                                                                 std::vector<double>,
+                                                                 std::vector<ComplexNumber<double>>,
+                                                                 std::vector<ComplexNumber<double>>,
+                                                                 const TwoPointOptions&);
+
+}  // namespace continuo::boundary

@@ -1,0 +1,229 @@
+// Calls with as many points as there are, and differences of all components in one call.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <continuo/boundary/number_size.hpp>
+#include <continuo/boundary/two_point_functions.hpp>
+
+namespace continuo::boundary {
+
+namespace {
+
+constexpr std::size_t most_numbers_at_once = 1 << 18;  // of y in one call for differences: 2 MB
+
+/// The displacement of a forward difference.
+template <class Number>
+Number displaced(const Number& value) {
+  return value + Number(std::sqrt(std::numeric_limits<double>::epsilon()) * (1 + size_of(value)));
+}
+
+/// to(j, i) = from(i, j).
+template <class Number>
+void transpose(std::span<const Number> from, std::size_t rows, std::span<Number> to) {
+  const std::size_t columns = from.size() / rows;
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) to[j * rows + i] = from[i * columns + j];
+}
+
+/// x = M x, for a small square M.
+template <class Number>
+void multiply(const std::vector<Number>& matrix, std::span<Number> x, std::size_t stride = 1) {
+  const std::size_t n = (x.size() + stride - 1) / stride;
+  std::vector<Number> product(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) product[i] += matrix[i * n + j] * x[j * stride];
+  for (std::size_t i = 0; i < n; ++i) x[i * stride] = product[i];
+}
+
+}  // namespace
+
+template <class Number>
+void TwoPointFunctions<Number>::derivative(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f) {
+  const std::size_t n = size();
+  by_component_.resize(y.size());
+  slopes_by_component_.resize(y.size());
+  transpose<Number>(y, x.size(), by_component_);
+  problem_.derivative(x, by_component_, p, slopes_by_component_);
+  transpose<Number>(slopes_by_component_, n, f);
+  if (problem_.singular_term.empty()) return;
+  for (std::size_t q = 0; q < x.size(); ++q) {
+    const auto slope = f.subspan(q * n, n);
+    if (x[q] == start_) {
+      multiply(problem_.first_derivative, slope);
+      continue;
+    }
+    const double factor = 1 / (x[q] - start_);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) slope[i] += problem_.singular_term[i * n + j] * y[q * n + j] * factor;
+  }
+}
+
+/// At the nodes and at the middles, by a call for each.
+template <class Number>
+void TwoPointFunctions<Number>::derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p,
+                                                   std::span<Number> f) {
+  const std::size_t n = size();
+  for (const std::size_t first : {0, 1}) {
+    std::vector<double> some_x;
+    std::vector<Number> some_y;
+    for (std::size_t q = first; q < x.size(); q += 2) {
+      some_x.push_back(x[q]);
+      some_y.insert(some_y.end(), y.begin() + static_cast<std::ptrdiff_t>(q * n),
+                    y.begin() + static_cast<std::ptrdiff_t>((q + 1) * n));
+    }
+    std::vector<Number> some_f(some_y.size());
+    derivative(some_x, some_y, p, some_f);
+    for (std::size_t q = first, at = 0; q < x.size(); q += 2, at += n)
+      std::copy_n(some_f.begin() + static_cast<std::ptrdiff_t>(at), n, f.begin() + static_cast<std::ptrdiff_t>(q * n));
+  }
+}
+
+/// Each point n + 1 times: as it is, and with each component displaced. False where f at a point differs from what it
+/// was in another company: then its points depend on each other, and only calls as those for the equations will do.
+template <class Number>
+bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f,
+                                                  std::vector<Number>& by_y) {
+  constexpr double rounding = 1e-10;
+  const std::size_t n = size(), copies = n + 1;
+  const std::size_t chunk = std::max<std::size_t>(1, most_numbers_at_once / (n * copies));
+  double greatest = 0;
+  for (const Number& slope : f) greatest = std::max(greatest, size_of(slope));
+  for (std::size_t begin = 0; begin < x.size(); begin += chunk) {
+    const std::size_t count = std::min(chunk, x.size() - begin);
+    std::vector<double> all_x(count * copies);
+    std::vector<Number> all_y(count * copies * n), all_f(count * copies * n);
+    for (std::size_t q = 0; q < count; ++q) {
+      std::fill_n(all_x.begin() + static_cast<std::ptrdiff_t>(q * copies), copies, x[begin + q]);
+      const auto point = y.subspan((begin + q) * n, n);
+      for (std::size_t c = 0; c < copies; ++c) {
+        Number* const copy = all_y.data() + (q * copies + c) * n;
+        std::ranges::copy(point, copy);
+        if (c > 0) copy[c - 1] = displaced(copy[c - 1]);
+      }
+    }
+    derivative(all_x, all_y, p, all_f);
+    for (std::size_t q = 0; q < count; ++q) {
+      const Number* const here = all_f.data() + q * copies * n;
+      for (std::size_t i = 0; i < n; ++i)
+        if (!(size_of(here[i] - f[(begin + q) * n + i]) <= rounding * greatest)) return false;
+      for (std::size_t j = 0; j < n; ++j) {
+        const Number* const moved = here + (j + 1) * n;
+        const Number before = y[(begin + q) * n + j];
+        const Number inverse = reciprocal(all_y[(q * copies + j + 1) * n + j] - before);
+        for (std::size_t i = 0; i < n; ++i) {
+          const Number slope = (moved[i] - here[i]) * inverse;
+          if (!is_finite(slope)) return false;
+          by_y[((begin + q) * n + i) * n + j] = slope;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f,
+                                                       std::vector<Number>& by_y) {
+  const std::size_t n = size();
+  std::vector<Number> moved(y.begin(), y.end()), moved_f(f.size());
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t q = 0; q < x.size(); ++q) moved[q * n + j] = displaced(y[q * n + j]);
+    derivative_on_mesh(x, moved, p, moved_f);
+    for (std::size_t q = 0; q < x.size(); ++q) {
+      const Number inverse = reciprocal(moved[q * n + j] - y[q * n + j]);
+      for (std::size_t i = 0; i < n; ++i) by_y[(q * n + i) * n + j] = (moved_f[q * n + i] - f[q * n + i]) * inverse;
+      moved[q * n + j] = y[q * n + j];
+    }
+  }
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::parameter_jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f,
+                                                    std::vector<Number>& by_p) {
+  const std::size_t k = parameters();
+  std::vector<Number> moved(p.begin(), p.end()), moved_f(f.size());
+  for (std::size_t l = 0; l < k; ++l) {
+    moved[l] = displaced(p[l]);
+    if (points_are_independent_) {
+      derivative(x, y, moved, moved_f);
+    } else {
+      derivative_on_mesh(x, y, moved, moved_f);
+    }
+    const Number inverse = reciprocal(moved[l] - p[l]);
+    moved[l] = p[l];
+    for (std::size_t i = 0; i < f.size(); ++i) by_p[i * k + l] = (moved_f[i] - f[i]) * inverse;
+  }
+}
+
+/// From (i, j, q) to point by point; the singular term is added.
+template <class Number>
+void TwoPointFunctions<Number>::given_jacobians(std::span<const double> x, Numbers y, Numbers p,
+                                                PointJacobians<Number>& result) {
+  const std::size_t n = size(), k = parameters();
+  by_component_.resize(y.size());
+  transpose<Number>(y, x.size(), by_component_);
+  std::vector<Number> by_y(result.by_y.size()), by_p(result.by_p.size());
+  problem_.derivative_jacobian(x, by_component_, p, by_y, by_p);
+  transpose<Number>(by_y, n * n, result.by_y);
+  if (k > 0) transpose<Number>(by_p, n * k, result.by_p);
+  if (problem_.singular_term.empty()) return;
+  for (std::size_t q = 0; q < x.size(); ++q) {
+    const auto block = std::span(result.by_y).subspan(q * n * n, n * n);
+    const auto border = std::span(result.by_p).subspan(q * n * k, n * k);
+    if (x[q] == start_) {
+      for (std::size_t j = 0; j < n; ++j) multiply(problem_.first_derivative, block.subspan(j, n * n - n + 1), n);
+      for (std::size_t l = 0; l < k; ++l) multiply(problem_.first_derivative, border.subspan(l, n * k - k + 1), k);
+      continue;
+    }
+    const double factor = 1 / (x[q] - start_);
+    for (std::size_t e = 0; e < n * n; ++e) block[e] += problem_.singular_term[e] * factor;
+  }
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f,
+                                          PointJacobians<Number>& result) {
+  result.by_y.resize(y.size() * size());
+  result.by_p.resize(y.size() * parameters());
+  if (problem_.derivative_jacobian) return given_jacobians(x, y, p, result);
+  if (points_are_independent_) points_are_independent_ = jacobians_at_once(x, y, p, f, result.by_y);
+  if (!points_are_independent_) jacobians_by_component(x, y, p, f, result.by_y);
+  parameter_jacobians(x, y, p, f, result.by_p);
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::condition_jacobians(Numbers y_first, Numbers y_last, Numbers p, Numbers residuals,
+                                                    ConditionJacobians<Number>& result) const {
+  const std::size_t n = size(), k = parameters(), rows = n + k;
+  result.first.resize(rows * n), result.last.resize(rows * n), result.by_p.resize(rows * k);
+  if (problem_.condition_jacobian)
+    return problem_.condition_jacobian(y_first, y_last, p, result.first, result.last, result.by_p);
+  std::vector<Number> first(y_first.begin(), y_first.end()), last(y_last.begin(), y_last.end()),
+      of_p(p.begin(), p.end());
+  std::vector<Number> moved_residuals(rows);
+  const auto differences = [&](std::vector<Number>& arguments, std::vector<Number>& columns) {
+    for (std::size_t j = 0; j < arguments.size(); ++j) {
+      const Number before = arguments[j];
+      arguments[j] = displaced(before);
+      conditions(first, last, of_p, moved_residuals);
+      const Number inverse = reciprocal(arguments[j] - before);
+      arguments[j] = before;
+      for (std::size_t i = 0; i < rows; ++i)
+        columns[i * arguments.size() + j] = (moved_residuals[i] - residuals[i]) * inverse;
+    }
+  };
+  differences(first, result.first);
+  differences(last, result.last);
+  differences(of_p, result.by_p);
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::restrict_first(std::span<Number> y_first) const {
+  if (!problem_.first_value.empty()) multiply(problem_.first_value, y_first);
+}
+
+template class TwoPointFunctions<double>;
+template class TwoPointFunctions<ComplexNumber<double>>;
+
+}  // namespace continuo::boundary

@@ -1,0 +1,66 @@
+// The functions of a two-point problem at many points, node by node, with the singular term and with derivatives by
+// differences. Internal to two_point.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <continuo/boundary/two_point.hpp>
+
+namespace continuo::boundary {
+
+/// df/dy of each point, row by row, and df/dp likewise.
+template <class Number>
+struct PointJacobians {
+  std::vector<Number> by_y, by_p;
+};
+
+/// Derivatives of the conditions, row by row.
+template <class Number>
+struct ConditionJacobians {
+  std::vector<Number> first, last, by_p;
+};
+
+/// y and f are given node by node, y_i of point q at q * n + i.
+template <class Number>
+class TwoPointFunctions {
+ public:
+  /// `start` is a, where the singular term is.
+  TwoPointFunctions(const TwoPointProblem<Number>& problem, double start) : problem_(problem), start_(start) {}
+
+  [[nodiscard]] std::size_t size() const { return problem_.size; }
+  [[nodiscard]] std::size_t parameters() const { return problem_.parameters; }
+  /// f, with the singular term, at the points x.
+  void derivative(std::span<const double> x, std::span<const Number> y, std::span<const Number> p, std::span<Number> f);
+  /// Its derivatives at the points x, where it is f. The points are those of a mesh and the middles between them.
+  void jacobians(std::span<const double> x, std::span<const Number> y, std::span<const Number> p,
+                 std::span<const Number> f, PointJacobians<Number>& result);
+  /// The residuals of the conditions.
+  void conditions(std::span<const Number> y_first, std::span<const Number> y_last, std::span<const Number> p,
+                  std::span<Number> residuals) const {
+    problem_.conditions(y_first, y_last, p, residuals);
+  }
+  /// Their derivatives, where they are `residuals`.
+  void condition_jacobians(std::span<const Number> y_first, std::span<const Number> y_last, std::span<const Number> p,
+                           std::span<const Number> residuals, ConditionJacobians<Number>& result) const;
+  /// Makes y(a) one that the singular term allows.
+  void restrict_first(std::span<Number> y_first) const;
+
+ private:
+  using Numbers = std::span<const Number>;
+  void given_jacobians(std::span<const double> x, Numbers y, Numbers p, PointJacobians<Number>& result);
+  bool jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
+  void jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
+  void derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f);
+  void parameter_jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_p);
+
+  const TwoPointProblem<Number>& problem_;
+  double start_;
+  bool points_are_independent_ = true;  // as far as has been seen
+  std::vector<Number> by_component_, slopes_by_component_;
+};
+
+extern template class TwoPointFunctions<double>;
+extern template class TwoPointFunctions<ComplexNumber<double>>;
+
+}  // namespace continuo::boundary
