@@ -7,3 +7,8 @@ void add_light_state(pybind11::module_& module);
 void add_native(pybind11::module_& module);
 void add_run(pybind11::module_& module);
 void add_solve_bvp(pybind11::module_& module);
+namespace continuo::python {
+
+void add_model(pybind11::module_& module);
+
+}  // namespace continuo::python

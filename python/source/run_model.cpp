@@ -1,0 +1,110 @@
+// Runs a model without the interpreter's lock, so that Ctrl-C ends the run and keeps what there is of it.
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <pybind11/stl.h>
+
+#include "loaded_model.hpp"
+#include "messages.hpp"
+#include "watched_work.hpp"
+#include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
+
+namespace continuo::python {
+namespace {
+
+namespace py = pybind11;
+
+/// What Python asks for, by the names of Experiment.
+model::Experiment experiment_of(const py::dict& asked) {
+  model::Experiment experiment;
+  for (const auto& [key, value] : asked) {
+    const std::string name = py::cast<std::string>(key);
+    if (name == "method")
+      experiment.method = py::cast<std::string>(value);
+    else if (name == "rtol")
+      experiment.rtol = py::cast<double>(value);
+    else if (name == "atol")
+      experiment.atol = {py::cast<double>(value)};
+    else if (name == "rtol_of")
+      experiment.rtol_of = py::cast<model::Overrides>(value);
+    else if (name == "atol_of")
+      experiment.atol_of = py::cast<model::Overrides>(value);
+    else if (name == "step")
+      experiment.step = py::cast<double>(value);
+    else if (name == "to")
+      experiment.to = py::cast<double>(value);
+    else if (name == "output")
+      experiment.output = py::cast<double>(value);
+    else if (name == "output_steps")
+      experiment.output_steps = py::cast<bool>(value);
+    else if (name == "max_step")
+      experiment.max_step = py::cast<double>(value);
+    else if (name == "max_steps")
+      experiment.max_steps = py::cast<std::size_t>(value);
+    else if (name == "parameters")
+      experiment.parameters = py::cast<model::Overrides>(value);
+    else if (name == "initial")
+      experiment.initial = py::cast<model::Overrides>(value);
+    else if (name == "estimate_error")
+      experiment.estimate_error = py::cast<bool>(value);
+    else
+      throw py::key_error(name);
+  }
+  experiment.doubts = true;
+  return experiment;
+}
+
+/// Makes a function of the part that is done of one of the place.
+class PartTeller {
+ public:
+  PartTeller(const LoadedModel& model, const model::Experiment& experiment, py::object tell) : tell_(std::move(tell)) {
+    if (tell_.is_none() || !runs::kind_of(model.model()).has_start) return;
+    std::vector<model::Diagnostic> problems;  // the run itself will tell of them
+    const auto plan = runs::plan(model.model(), experiment, problems);
+    if (!plan || !(plan->to > plan->from)) return;
+    from_ = plan->from;
+    to_ = plan->to;
+  }
+
+  /// What is to be called with a place.
+  [[nodiscard]] py::object function() const {
+    if (tell_.is_none()) return tell_;
+    return py::cpp_function([tell = tell_, from = from_, to = to_](double place) {
+      const double part = (place - from) / (to - from);
+      tell(part < 0 ? 0 : part > 1 ? 1 : part);
+    });
+  }
+  [[nodiscard]] double begin() const { return from_; }
+
+ private:
+  py::object tell_;
+  double from_ = 0, to_ = 1;
+};
+
+/// The run, or None; its messages; and what a signal or `tell` has raised, or None.
+py::tuple run(const LoadedModel& self, const py::dict& asked, const py::object& tell) {
+  model::Experiment experiment = experiment_of(asked);
+  const PartTeller parts(self, experiment, tell);
+  Watched watched;
+  watched.place = parts.begin();
+  experiment.interrupt = &watched.interrupt;
+  if (!tell.is_none()) experiment.progress = [&watched](double place) { watched.place.store(place); };
+  model::Simulated simulated;
+  const py::object raised =
+      do_watched([&] { simulated = runs::run(self.program, experiment); }, watched, parts.function());
+  py::object messages = messages_of(simulated.diagnostics, self.source);
+  py::object result = py::none();
+  if (simulated.run)
+    result = py::cast(std::make_shared<ModelRun>(ModelRun{.program = self.program, .run = *std::move(simulated.run)}));
+  return py::make_tuple(result, messages, raised ? raised : py::none());
+}
+
+}  // namespace
+
+void add_run_of_model(py::class_<LoadedModel, std::shared_ptr<LoadedModel>>& model) {
+  model.def("run", &run, py::arg("asked"), py::arg("tell"));
+}
+
+}  // namespace continuo::python
