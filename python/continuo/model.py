@@ -1,0 +1,605 @@
+"""Models in the language of Continuo."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import re
+import threading
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+
+from . import _continuo
+from .errors import Interrupted, ModelError, ModelWarning, RunError, parsed
+from .model_run import Run
+from .progress_bar import ProgressOption, watcher
+from .studies import Studies
+from .values import SettableValues, Value, Values, did_you_mean, table_html
+
+if TYPE_CHECKING:
+    from .view import View
+
+Number = Union[float, int, str]
+Tolerance = Union[float, Mapping[str, float]]
+
+_AT_START = re.compile(r"(.+)\(([^()]*)\)$")  # x(0)
+_BARE_UNIT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s+([^\W\d_%°][^\[\]]*?)\s*$")  # 3 km/h
+
+
+class Model(Studies):
+    """A model: equations, parameters, events, as a text in the language.
+
+    Parameters
+    ----------
+    file : str or path, optional
+        A file, such as ``"ball.sim"``. Tables that its text names are found beside it.
+    text : str, optional
+        The text itself, in place of a file. Tables are found in the present folder.
+    name : str, optional
+        How messages call the text.
+    native : {"auto", "always", "never"}
+        Machine code for the equations, with the same results to the bit: as soon as it pays, always, never.
+
+    Raises
+    ------
+    ModelError
+        The text contains an error: ``code``, ``line``, ``column``, ``hint``; its text is what the command prints.
+    FileNotFoundError
+        There is no such file.
+
+    Notes
+    -----
+    Parameters are attributes: ``model.k`` is a number that knows its unit, ``model.k = 3`` sets it for the runs to
+    come, in the unit of its declaration; ``model.k = "3 N/cm"`` converts. ``del model.parameters["k"]`` gives it back
+    the value in the text. States begin elsewhere by ``model.states["x"] = 2``.
+
+    A model may be run by several threads at once, as long as none of them sets anything. Models can be pickled and
+    copied.
+
+    Examples
+    --------
+    >>> model = Model(text="x'' = -k*x\\nparam k = 4\\nx(0) = 1; x'(0) = 0\\nrun 0..3 tol 1e-9")
+    >>> run = model.run(k=1)
+    >>> round(run["x"][-1], 6)
+    -0.989992
+    """
+
+    _native: _continuo.Model
+    _given: dict[str, float]
+    _initial: dict[str, float]
+
+    def __init__(
+        self,
+        file: Union[str, "os.PathLike[str]", None] = None,
+        *,
+        text: Optional[str] = None,
+        name: Optional[str] = None,
+        native: str = "auto",
+    ) -> None:
+        if (file is None) == (text is None):
+            raise TypeError('Model takes a file, Model("ball.sim"), or a text, Model(text="...")')
+        if file is not None:
+            path = Path(os.fsdecode(file))
+            source, source_name = _contents(path), os.fsencode(path)
+            folder = path.absolute().parent
+        else:
+            assert text is not None
+            if not isinstance(text, str):
+                raise TypeError(f"text is a str, not {type(text).__name__}")
+            path, folder = None, Path.cwd()
+            source, source_name = text.encode("utf-8", "surrogateescape"), (name or "text").encode()
+        self._begin(source, name.encode() if name else source_name, native, path, folder)
+
+    def _begin(self, source: bytes, name: bytes, native: str, path: Optional[Path], folder: Path) -> None:
+        loaded, messages = _continuo.load_model(name, source, native)
+        message_text, data = parsed(messages)
+        if loaded is None:
+            raise ModelError(message_text or "the text is no model", data)
+        _warn(message_text)
+        for attribute, value in {
+            "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path, "_folder": folder,
+            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {},
+        }.items():  # fmt: skip
+            object.__setattr__(self, attribute, value)
+
+    # ---- copies -----------------------------------------------------------------------------------------------------
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "source": self._native.text, "name": self._source_name, "native": self._mode, "path": self._path,
+            "folder": self._folder, "given": dict(self._given), "initial": dict(self._initial),
+        }  # fmt: skip
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ModelWarning)  # they were shown when it was read first
+            # A text in memory finds its tables in the folder that was the present one when it was read first.
+            name = state["name"] if state["path"] is None else os.fsencode(state["path"])
+            self._begin(state["source"], name, state["native"], state["path"], state["folder"])
+        self._given.update(state["given"])
+        self._initial.update(state["initial"])
+
+    def copy(self) -> "Model":
+        """A model of the same text with the same settings, which can be set apart from this one."""
+        other = object.__new__(type(self))
+        for attribute, value in self.__dict__.items():
+            object.__setattr__(other, attribute, value)
+        for attribute, value in {
+            "_given": dict(self._given), "_initial": dict(self._initial), "_lock": threading.Lock()
+        }.items():  # fmt: skip
+            object.__setattr__(other, attribute, value)
+        return other
+
+    __copy__ = copy
+
+    def reset(self) -> None:
+        """Gives all parameters, inputs and initial values back those in the text."""
+        self._given.clear()
+        self._initial.clear()
+
+    # ---- what is in it ----------------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Of its ``model`` statement, else of its file."""
+        return self._native.name
+
+    @property
+    def description(self) -> str:
+        """The comment at the top of the text."""
+        return self._native.heading
+
+    @property
+    def text(self) -> str:
+        """The text itself."""
+        return self._native.text.decode("utf-8", "replace")
+
+    @property
+    def time_unit(self) -> str:
+        """The unit of time; empty without units."""
+        return self._native.time_unit
+
+    @property
+    def events(self) -> list[str]:
+        """The events, as the text writes them."""
+        return self._native.events()
+
+    def _part(self, name: str) -> Any:
+        """Lists of names with their units, of the text as it is with the present sizes of families."""
+        native = self._present()
+        if self._parts.get("of") is not native:
+            object.__setattr__(self, "_parts", {"of": native})
+        if name not in self._parts:
+            self._parts[name] = getattr(native, name)()
+        return self._parts[name]
+
+    def _values_at_start(self) -> tuple[list[float], list[float], list[float]]:
+        return self._present().values(self._given)
+
+    def _read_parameters(self) -> dict[str, Value]:
+        values = self._values_at_start()[0]
+        return {
+            name: Value(value, unit, comment, range)
+            for (name, unit, comment, range, _), value in zip(self._part("parameters"), values)
+        }
+
+    def _read_inputs(self) -> dict[str, Value]:
+        values = self._values_at_start()[1]
+        return {
+            name: Value(value, unit, comment, range)
+            for (name, unit, comment, range, _), value in zip(self._part("inputs"), values)
+        }
+
+    def _read_states(self) -> dict[str, Value]:
+        values = self._values_at_start()[2]
+        return {
+            name: Value(self._initial.get(name, value), unit, "algebraic" if algebraic else "")
+            for (name, unit, algebraic, _), value in zip(self._part("states"), values)
+        }
+
+    def _read_outputs(self) -> dict[str, Value]:
+        return {
+            name: Value(math.nan, unit, kind)
+            for kind in ("outputs", "energies", "lets")
+            for name, unit in self._part(kind)
+        }
+
+    @property
+    def parameters(self) -> SettableValues:
+        """The parameters by name; each can be set for the runs to come. Those that depend on others follow these."""
+        return SettableValues("parameter", self._read_parameters, self._set, self._forget)
+
+    @property
+    def inputs(self) -> SettableValues:
+        """The inputs by name, with their values at the start; those without a file can be set."""
+        return SettableValues("input", self._read_inputs, self._set, self._forget)
+
+    @property
+    def states(self) -> SettableValues:
+        """The states by name, with their initial values, which can be set for the runs to come."""
+        return SettableValues("state", self._read_states, self._set, self._forget)
+
+    @property
+    def outputs(self) -> Values:
+        """The outputs, energies and ``let`` quantities by name, with their units. Their values are those of a run."""
+        return Values("output", self._read_outputs)
+
+    # ---- parameters as attributes -----------------------------------------------------------------------------------
+
+    def __getattr__(self, name: str) -> Value:
+        if not name.startswith("_"):
+            for values in (self._read_parameters(), self._read_inputs()):
+                if name in values:
+                    return values[name]
+        raise AttributeError(self._no_attribute(name), name=name, obj=self)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        is_own = name.startswith("_") or hasattr(type(self), name)
+        if not is_own and name in self._settable():
+            self._set(name, value)
+        elif is_own:
+            hint = f"; the parameter of this name is model.parameters[{name!r}]" if name in self._settable() else ""
+            raise AttributeError(f"`{name}` of a Model cannot be replaced{hint}", name=name, obj=self)
+        else:
+            raise AttributeError(self._no_attribute(name), name=name, obj=self)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(name for name in self._settable() if name.isidentifier())]
+
+    def _settable(self) -> list[str]:
+        return [one[0] for one in self._part("parameters")] + [one[0] for one in self._part("inputs")]
+
+    def _no_attribute(self, name: str) -> str:
+        if name.startswith("_"):
+            return f"a Model has no attribute `{name}`"
+        if self._native.states_named(name):
+            return f"`{name}` is a state: model.states[{name!r}] is where it begins, run[{name!r}] its motion"
+        own = [one for one in dir(type(self)) if not one.startswith("_")]
+        near = difflib.get_close_matches(name, own, n=2, cutoff=0.75)
+        hint = f"did you mean `{near[0]}`?" if near else did_you_mean(name, self._settable())
+        return f"the model has no parameter `{name}`; {hint}".rstrip("; ")
+
+    # ---- settings ---------------------------------------------------------------------------------------------------
+
+    def _set(self, name: str, value: Any) -> None:
+        kind, column, number = self._resolved(name, value)
+        (self._initial if kind == "initial" else self._given)[column] = number
+
+    def _forget(self, name: str) -> None:
+        self._given.pop(name, None)
+        self._initial.pop(name, None)
+
+    def _resolved(self, name: str, value: Any) -> tuple[str, str, float]:
+        """What a name stands for, "parameter" or "initial", its own name, and the value in its unit."""
+        parts: dict[str, Any] = {one[0]: one for one in self._part("parameters")}
+        if name in parts:
+            number, low_high = _number_or_text(name, value), parts[name][3]
+            if isinstance(number, float) and (low_high is None or low_high[0] <= number <= low_high[1]):
+                return "parameter", name, number
+            return "parameter", name, _read(self._native.read_parameter, name, number)
+        inputs = {one[0]: one for one in self._part("inputs")}
+        if name in inputs:
+            number = _number_or_text(name, value)
+            if inputs[name][4]:
+                raise ModelError(f"the input `{name}` follows a file: the text says which")
+            if not isinstance(number, float):
+                raise ModelError(f"the input `{name}` is set by a number, in {inputs[name][1] or 'no unit'}")
+            return "parameter", name, number
+        state = name
+        at_start = _AT_START.match(name)
+        if at_start and not self._native.states_named(name):
+            state = at_start.group(1).strip()
+            self._check_start(name, at_start.group(2))
+        if self._native.states_named(state):
+            number = _number_or_text(name, value)
+            return "initial", state, _read(self._native.read_initial, state, number)
+        names = [*parts, *inputs, *(one[0] for one in self._part("states")[:1000])]
+        raise ModelError(f"the model has no parameter, input or state `{name}`; {did_you_mean(name, names)}".rstrip("; "))
+
+    def _check_start(self, name: str, time: str) -> None:
+        start = self._native.span[0] or 0.0
+        try:
+            is_start = float(time) == start
+        except ValueError:
+            is_start = False
+        if not is_start:
+            raise ModelError(f"`{name}` cannot be set: the run begins at t = {start:g}")
+
+    def _resolved_all(
+        self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+    ) -> tuple[dict[str, float], dict[str, float]]:
+        """Parameters and initial values: those that are set, then these."""
+        given, initial = dict(self._given), dict(self._initial)
+        for name, value in [*values.items(), *(more or {}).items()]:
+            kind, column, number = self._resolved(name, value)
+            (initial if kind == "initial" else given)[column] = number
+        return given, initial
+
+    def _present(self, given: Optional[Mapping[str, float]] = None) -> _continuo.Model:
+        """The model with families of the size that the settings decide; the last one is kept."""
+        values = self._given if given is None else given
+        if not values:
+            return self._native
+        structural = self._structural_names()
+        sizes = tuple(sorted((name, value) for name, value in values.items() if name in structural))
+        if not sizes:
+            return self._native
+        with self._lock:
+            if not self._sized or self._sized[0] != sizes:
+                loaded, messages = self._native.with_values(dict(sizes))
+                text, data = parsed(messages)
+                if loaded is None:
+                    raise ModelError(text, data)
+                object.__setattr__(self, "_sized", (sizes, loaded))
+            present: _continuo.Model = self._sized[1]
+            return present
+
+    def _structural_names(self) -> frozenset[str]:
+        if "_structural" not in self.__dict__:
+            names = frozenset(one[0] for one in self._native.parameters() if one[4])
+            object.__setattr__(self, "_structural", names)
+        return frozenset(self.__dict__["_structural"])
+
+    # ---- runs -------------------------------------------------------------------------------------------------------
+
+    def run(
+        self,
+        until: Optional[float] = None,
+        *,
+        method: Optional[str] = None,
+        tol: Optional[Tolerance] = None,
+        rtol: Optional[Tolerance] = None,
+        atol: Optional[Tolerance] = None,
+        step: Optional[float] = None,
+        output: Union[float, str, None] = None,
+        max_step: Optional[float] = None,
+        max_steps: Optional[int] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        estimate_error: bool = False,
+        check: bool = True,
+        progress: ProgressOption = None,
+        **values: Any,
+    ) -> Run:
+        """Runs the model as its ``run`` statement says, with these changes.
+
+        Parameters
+        ----------
+        until : float, optional
+            The end of the run, in the model's unit of time.
+        method : str, optional
+            The integration method by name; ``continuo methods`` lists them.
+        tol, rtol : float or mapping, optional
+            The relative tolerance (two names for it), of all states or of single ones by name.
+        atol : float or mapping, optional
+            The absolute tolerance, in the unit of each state.
+        step : float, optional
+            A fixed step in place of tolerances.
+        output : float or "steps", optional
+            A row every so much time, or at every step.
+        max_step : float, optional
+            The largest step.
+        max_steps : int, optional
+            The largest number of steps.
+        set : mapping, optional
+            Values by names that are no keywords of Python: ``set={"x'(0)": 2, "m[3]": 1}``.
+        estimate_error : bool
+            Whether a second, stricter run estimates the true error (``run.error``).
+        check : bool
+            Whether a run that does not reach its end raises RunError. With False it is returned, and its ``outcome``
+            is false.
+        progress : callable, bool or None
+            Called with the part that is done, 0 to 1, ten times a second; True shows a bar, False none; None shows
+            one where somebody watches. What it raises ends the run.
+        **values
+            Parameters, inputs without a file, and initial values of states by name: ``g=1.62``. Numbers are in the
+            unit of the declaration; texts such as ``"3 km/h"`` are converted.
+
+        Returns
+        -------
+        Run
+
+        Raises
+        ------
+        ModelError
+            What is asked does not fit the model.
+        RunError
+            The run did not reach its end. ``error.run`` has its rows until then, ``str(error)`` the reason and a
+            remedy.
+        Interrupted
+            Ctrl-C ended the run at once (a KeyboardInterrupt); ``error.run`` has its rows until then.
+
+        Warns
+        -----
+        ModelWarning
+            Warnings of the library, and checks of the model that do not hold in a run of it as it is written.
+        """
+        self._warn_of_shadowed(values)
+        given, initial = self._resolved_all(values, set)
+        asked: dict[str, Any] = {"parameters": given, "initial": initial}
+        _put_numbers(asked, to=until, step=step, max_step=max_step)
+        _put_tolerances(asked, tol, rtol, atol)
+        if method is not None:
+            asked["method"] = _text("method", method)
+        if output is not None:
+            asked.update({"output_steps": True} if output == "steps" else {"output": _number("output", output)})
+        if max_steps is not None:
+            asked["max_steps"] = _count("max_steps", max_steps)
+        if estimate_error:
+            asked["estimate_error"] = True
+        changes = [until, method, tol, rtol, atol, step, max_step, max_steps]
+        as_written = not given and not initial and all(change is None for change in changes)
+        return self._do_run(asked, as_written, check, progress)
+
+    def _do_run(self, asked: dict[str, Any], as_written: bool, check: bool, progress: ProgressOption) -> Run:
+        native = self._present(asked["parameters"])
+        tell, close = watcher(progress, self.name)
+        try:
+            done, messages, raised = native.run(asked, tell)
+        finally:
+            close()
+        text, data = parsed(messages)
+        run = Run(done, self.name, as_written, data) if done is not None else None
+        if raised is not None:
+            if not isinstance(raised, KeyboardInterrupt):
+                raise raised
+            where = f" at t = {run.t[-1]:g}; its rows until then are in .run" if run is not None and len(run) else ""
+            raise Interrupted(f"the run was interrupted{where}", run) from None
+        if run is None:
+            asked_wrongly = any(message["code"].startswith(("E32", "E33", "E34")) for message in data)
+            raise (ModelError if asked_wrongly else RunError)(text or "there is no run", data)
+        if not run.outcome and check:
+            raise RunError(text or str(run.outcome), data, run)
+        _warn(text)
+        if as_written:
+            _warn("\n".join(one.message for one in run.checks if not one))
+        return run
+
+    def _warn_of_shadowed(self, values: Mapping[str, Any]) -> None:
+        """A parameter may be called like an option, which then gets the value: that is said, not passed over."""
+        if "_shadowed" not in self.__dict__:
+            names = frozenset(name for name in self._settable() if name in _RUN_OPTIONS)
+            object.__setattr__(self, "_shadowed", names)
+        for name in self.__dict__["_shadowed"]:
+            _warn(f'`{name}` is an option of run(); the parameter of this name is set by set={{"{name}": ...}}')
+
+    # ---- notebooks --------------------------------------------------------------------------------------------------
+
+    def view(self, *, width: Union[int, str] = "100%", height: int = 640, timeout: float = 30.0) -> "View":
+        """The live view: the motion as a drawing with sliders, in the notebook or in the browser.
+
+        A slider moved there changes this model: ``model.k`` follows. ``model.k = 3`` here moves the slider there.
+        The view ends with ``view.close()``, or with Python.
+
+        Parameters
+        ----------
+        width, height : int or str
+            Of the frame in the notebook.
+        timeout : float
+            How many seconds the view may take to begin.
+
+        Returns
+        -------
+        View
+            Shows itself where it is the last line of a cell.
+        """
+        from .view import View
+
+        return View(self, width=width, height=height, timeout=timeout)
+
+    def __repr__(self) -> str:
+        parts = [(len(self._part("states")), "state"), (len(self._part("parameters")), "parameter")]
+        counts = ", ".join(f"{count} {what}{'' if count == 1 else 's'}" for count, what in parts)
+        return f"<Model {self.name}: {counts}>"
+
+    def _repr_html_(self) -> str:
+        parameters, states = list(self.parameters.items()), list(self.states.items())
+        rows = [[name, f"{float(v):.8g}", v.unit, v.description] for name, v in parameters[:12]]
+        rows += [[f"{name}(start)", f"{float(v):.8g}", v.unit, v.description] for name, v in states[:12]]
+        return table_html([self.name, "value", "unit", "description"], rows)
+
+
+_RUN_OPTIONS = frozenset(Model.run.__kwdefaults__) | {"until"}
+
+
+# ---- what stands behind a keyword -----------------------------------------------------------------------------------
+
+
+def _warn(text: str) -> None:
+    if text:
+        warnings.warn(text, ModelWarning, stacklevel=_outside())
+
+
+def _outside() -> int:
+    """How many frames lie between the warning and whoever called the package."""
+    import sys
+
+    depth, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("continuo."):
+        depth, frame = depth + 1, frame.f_back
+    return depth
+
+
+def _contents(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError as error:
+        near = difflib.get_close_matches(path.name, [one.name for one in path.parent.glob("*.sim")], n=1)
+        hint = f"; did you mean {path.parent / near[0]}?" if near else ""
+        if "\n" in str(path):
+            hint = '; a text is given by Model(text="...")'
+        raise FileNotFoundError(error.errno, f"{error.strerror}{hint}", str(path)) from None
+
+
+def _number(name: str, value: Any) -> float:
+    """A finite number.
+
+    Raises
+    ------
+    TypeError, ValueError
+        The message names what was given.
+    """
+    if isinstance(value, (bool, str, bytes)) or getattr(value, "ndim", 0) != 0:
+        raise TypeError(f"{name} is one number, not {value!r}")
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        hint = "; several values are a sweep: model.sweep(...)" if hasattr(value, "__len__") else ""
+        raise TypeError(f"{name} is one number, not {value!r}{hint}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is a finite number, not {number}")
+    return number
+
+
+def _number_or_text(name: str, value: Any) -> Union[float, str]:
+    if not isinstance(value, str):
+        return _number(name, value)
+    bare = _BARE_UNIT.match(value)
+    return f"{bare.group(1)} [{bare.group(2)}]" if bare else value
+
+
+def _read(reader: Any, name: str, value: Union[float, str]) -> float:
+    """The value as the command line reads it, in the unit of its declaration."""
+    number, messages = reader(f"{name} = {value!r}" if isinstance(value, float) else f"{name} = {value}")
+    text, data = parsed(messages)
+    if number is None:
+        raise ModelError(text, data)
+    _warn(text)
+    return float(number)
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is a str, not {value!r}")
+    return value
+
+
+def _count(name: str, value: Any) -> int:
+    number = _number(name, value)
+    if number != int(number) or number < 1:
+        raise ValueError(f"{name} is a whole number from 1 on, not {value!r}")
+    return int(number)
+
+
+def _put_numbers(asked: dict[str, Any], **numbers: Any) -> None:
+    for name, value in numbers.items():
+        if value is not None:
+            asked[name] = _number("until" if name == "to" else name, value)
+
+
+def _put_tolerances(
+    asked: dict[str, Any], tol: Optional[Tolerance], rtol: Optional[Tolerance], atol: Optional[Tolerance]
+) -> None:
+    if tol is not None and rtol is not None:
+        raise TypeError("tol and rtol are two names of the relative tolerance: give one of them")
+    for name, value in (("rtol", rtol if tol is None else tol), ("atol", atol)):
+        if value is None:
+            continue
+        of = {key: _number(f"{name} of {key}", one) for key, one in value.items()} if isinstance(value, Mapping) else {}
+        numbers = list(of.values()) if of else [] if isinstance(value, Mapping) else [_number(name, value)]
+        for number in numbers:
+            if not number > 0 or (name == "rtol" and number >= 1):
+                kind = "between 0 and 1" if name == "rtol" else "greater than 0"
+                raise ValueError(f"{name} is {kind}, not {number:g}")
+        asked.update({f"{name}_of": of} if isinstance(value, Mapping) else {name: numbers[0]})
