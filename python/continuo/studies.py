@@ -1,0 +1,769 @@
+"""Studies of a model: the verbs of the command that study models, as methods."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from .command import Answer, options_of, run_command
+from .errors import Interrupted, ModelError, ModelWarning, RunError
+from .measurements import measurement_file
+from .optional import needed
+from .progress import ProgressOption, in_notebook, watcher
+from .study_result import LinearModel, StudyResult
+from .values import did_you_mean
+
+if TYPE_CHECKING:
+    from . import _continuo
+
+Names = Union[str, Sequence[str]]
+Bounds = Mapping[str, Union[str, tuple[Optional[float], Optional[float]]]]
+
+_STANDARD_INPUT = "standard input"  # how the command calls the model that it is handed over
+_LISTS = ("NAMES", "STATES", "RTOL,...", "H,...")  # options whose values are separated by commas
+
+
+class Studies:
+    """What can be studied of a model, by the command ``continuo`` (see ``continuo.command_path``).
+
+    Every study takes the model as it stands: its text, and the parameters that were set. Keywords that are no options
+    of the study are parameters: ``model.steady(k=3)``. All options of a verb can be given by their names on the
+    command line, with ``_`` for ``-``: ``model.fit(data, one_deviation=True)``; ``None`` leaves an option out. A list
+    stands for names or numbers separated by commas, a tuple of two numbers for a range, a mapping for ``NAME=VALUE``:
+    ``along={"k": (1, 5)}``.
+
+    Studies raise ModelError and RunError as runs do, and Interrupted after Ctrl-C, with ``result`` where there was
+    one. They show how far they are where somebody watches (``progress=False``: never).
+    """
+
+    if TYPE_CHECKING:
+        _folder: Path
+        _native: _continuo.Model
+        name: str
+        _source_name: bytes
+        _initial: dict[str, float]
+
+        def _resolved_all(
+            self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+        ) -> tuple[dict[str, float], dict[str, float]]: ...
+
+        def _part(self, name: str) -> Any: ...
+
+    # ---- the mechanism ----------------------------------------------------------------------------------------------
+
+    def study(
+        self,
+        verb: str,
+        *positional: str,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """Any verb of the command that takes a model.
+
+        Parameters
+        ----------
+        verb : str
+            Such as ``"steady"``.
+        *positional : str
+            What stands behind the model on the command line.
+        set : mapping, optional
+            Parameters by names that are no keywords of Python.
+        progress : callable, bool or None
+            As for ``Model.run``.
+        **options
+            Options of the verb, and parameters of the model.
+
+        Returns
+        -------
+        StudyResult
+        """
+        declared = options_of(verb)
+        asked, values = _told_apart(declared, options)
+        given = self._settings_as_options(declared, verb, values, set)
+        with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
+            picture = None
+            if in_notebook() and "--plot" in declared and "plot" not in asked:
+                picture = Path(folder) / "picture.svg"
+                asked["plot"] = str(picture)
+            arguments = [*given, *_arguments(verb, declared, asked)]
+            if "--model" in declared:
+                arguments = [*positional, "--model=-", *arguments]
+            else:
+                arguments = ["-", *positional, *arguments]
+            answer = self._answer([verb, *arguments], progress)
+            svg = picture.read_text() if picture is not None and picture.exists() else None
+        return self._result(verb, answer, svg)
+
+    def _settings_as_options(
+        self, declared: Mapping[str, Any], verb: str, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+    ) -> list[str]:
+        """The parameters that are set, these, and initial values, as options."""
+        given, initial = self._resolved_all(values, more)
+        inputs = [one[0] for one in self._part("inputs") if one[0] in given]
+        if inputs:
+            raise ModelError(f"`{verb}` takes inputs as the text has them; write the value of `{inputs[0]}` there")
+        takes_initial = declared.get("--initial", {}).get("value") == "NAME=VALUE"
+        if initial and not takes_initial:
+            name = next(iter(initial))
+            raise ModelError(f"`{verb}` begins where the text says; write `{name}(0) = {initial[name]:g}` there")
+        if given and "--set" not in declared:
+            raise ModelError(f"`{verb}` takes parameters as the text has them; model.reset() gives these back")
+        return [f"--set={name}={value!r}" for name, value in given.items()] + [
+            f"--initial={name}={value!r}" for name, value in initial.items()
+        ]
+
+    def _answer(self, arguments: list[str], progress: ProgressOption) -> Answer:
+        tell, close = watcher(progress, arguments[0])
+        try:
+            return run_command(arguments, self._native.text, self._folder, tell)
+        finally:
+            close()
+
+    def _result(self, verb: str, answer: Answer, svg: Optional[str] = None) -> StudyResult:
+        """The result, or the exception that stands for what went wrong."""
+        source = os.fsdecode(self._source_name)
+        text = answer.text.replace(_STANDARD_INPUT, source)
+        for message in answer.messages:
+            for key in ("file", "message"):
+                if key in message:
+                    message[key] = message[key].replace(_STANDARD_INPUT, source)
+        kind = LinearModel if verb == "linearize" else StudyResult
+        result = None if answer.failed else kind(verb, answer.json, svg)
+        if answer.was_interrupted:
+            raise Interrupted(f"`{verb}` was interrupted", result) from None
+        if result is None:
+            raise (RunError if answer.exit == 3 else ModelError)(text, answer.messages)
+        if answer.exit == 3 or answer.exit == 1:
+            raise RunError(text or f"`{verb}` did not come to its end", answer.messages, result)
+        if text:
+            warnings.warn(text, ModelWarning, stacklevel=4)
+        return result
+
+    # ---- many runs --------------------------------------------------------------------------------------------------
+
+    def sweep(
+        self,
+        vary: Union[Names, Mapping[str, Any], None] = None,
+        *,
+        runs: Union[str, int, None] = None,
+        keep: Optional[Names] = None,
+        until: Optional[float] = None,
+        method: Optional[str] = None,
+        tol: Union[float, Mapping[str, float], None] = None,
+        step: Optional[float] = None,
+        threads: Optional[int] = None,
+        out: Union[str, "os.PathLike[str]", None] = None,
+        check: bool = True,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> Any:
+        """Runs the model many times, on all cores.
+
+        Parameters
+        ----------
+        vary : mapping or str or list of str, optional
+            What is varied, beside what the text's ``sweep`` says. A mapping from names to arrays or lists of values,
+            to ``(low, high, count)``, or to words such as ``"normal(0.5, 0.1)"``; or whole sentences, such as
+            ``"k from 1 to 10 count 50"``. Parameters that are varied by arrays may be keywords: ``k=[1, 2, 5]``.
+        runs : str or int, optional
+            How many: ``"10000 sobol seed 7"``; without it every combination of the values, or what the text says.
+        keep : str or list of str, optional
+            What is kept of each run: ``"x at end, max(abs(x)) as peak"``.
+        until, method, tol, step
+            As for ``Model.run``.
+        threads : int, optional
+            How many threads make runs; one for each core without it.
+        out : path, optional
+            Where the netCDF file (.nc) stays; without it there is none. With ``resume=True`` a sweep that was
+            interrupted goes on there.
+        check : bool
+            Whether it is an error where runs did not reach their end. With False they are rows like the others,
+            without values; ``outcome`` tells them.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimension ``run``, and those of series; what was varied is a coordinate; ``attrs["statistics"]`` has the
+            mean, deviation and quantiles of what was kept, as in the JSON of the command.
+
+        Raises
+        ------
+        RunError
+            Runs failed; ``error.result`` is the Dataset of all.
+        Interrupted
+            ``result`` is the Dataset of the runs that were made.
+        """
+        xarray = needed("xarray", "model.sweep()")
+        sentences = _sentences_of(vary)
+        arrays = [name for name, value in options.items() if _is_several(value) and f"--{_dashed(name)}" not in
+                  options_of("sweep")]  # fmt: skip
+        sentences += _sentences_of({name: options.pop(name) for name in arrays})
+        options.update(until=until, method=method, tol=tol, step=step, threads=threads)
+        options.update(keep=_joined(keep, ", "), runs=None if runs is None else str(runs), vary=sentences or None)
+        declared = options_of("sweep")
+        asked, values = _told_apart(declared, options)
+        given = self._settings_as_options(declared, "sweep", values, set)
+        with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
+            table = Path(os.path.abspath(os.fsdecode(out))) if out is not None else Path(folder) / "sweep.nc"
+            if table.suffix != ".nc":
+                raise ValueError(f"out is the name of a netCDF file, such as sweep.nc, not {table.name}")
+            asked["out"] = str(table)
+            answer = self._answer(["sweep", "-", *given, *_arguments("sweep", declared, asked)], progress)
+            data = _dataset_of(xarray, table, answer)
+        try:
+            with warnings.catch_warnings():
+                if not check and data is not None and answer.exit == 3:
+                    warnings.simplefilter("ignore", ModelWarning)
+                    answer.exit = 0
+                self._result("sweep", answer)
+        except Interrupted as error:
+            error.result = data
+            raise
+        except RunError as error:
+            error.result = data
+            raise
+        return data
+
+    def fit(
+        self,
+        *data: Any,
+        param: Optional[Names] = None,
+        initial: Optional[Names] = None,
+        bounds: Optional[Bounds] = None,
+        sigma: Optional[Mapping[str, Any]] = None,
+        log: Optional[Names] = None,
+        prior: Optional[Mapping[str, str]] = None,
+        loss: Optional[str] = None,
+        column: Optional[Mapping[str, str]] = None,
+        starts: Optional[int] = None,
+        profile: bool = False,
+        tol: Union[float, Mapping[str, float], None] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """Finds parameters and initial values from measurements.
+
+        Parameters
+        ----------
+        *data : DataFrame, Dataset, mapping of arrays, or path
+            Measurements: a column ``t`` (or the index or coordinate of this name), and columns named like states or
+            outputs. NaN stands for what was not measured. Several are several experiments.
+        param : str or list of str, optional
+            The unknown parameters.
+        initial : str or list of str, optional
+            States whose initial values are unknown.
+        bounds : mapping, optional
+            Ranges of the search, in place of those in the text: ``{"k": (1, 20)}``; None leaves an end open.
+        sigma : mapping, optional
+            The deviation of the measurements of a column: a number, ``"5%"``, or a column that has them.
+        log : str or list of str, optional
+            Unknowns that are searched in their logarithm.
+        prior : mapping, optional
+            What is known before: ``{"k": "normal(4, 0.5)"}``.
+        loss : str, optional
+            ``"squares"``, or against outliers ``"huber"``, ``"soft_l1"``, ``"cauchy"``, ``"tukey"``.
+        column : mapping, optional
+            Which quantity a column is, where its name does not say: ``{"position": "x"}``.
+        starts : int, optional
+            How many points the search starts from.
+        profile : bool
+            Whether intervals are computed from the profile likelihood as well.
+        tol : float or mapping, optional
+            The relative tolerance of the runs.
+
+        Returns
+        -------
+        StudyResult
+            ``unknowns`` (name, value, deviation, interval, ...), ``correlations``, ``statistics``, ``columns`` with
+            residuals, ``converged``, ``doubts``. ``model.take(fit)`` sets the values found.
+        """
+        if not data:
+            raise TypeError("fit takes measurements: model.fit(data, param=[\"k\"])")
+        options.update(param=param, initial=initial, bounds=bounds, sigma=sigma, log=log, prior=prior, loss=loss)
+        options.update(column=column, starts=starts, profile=profile, tol=tol)
+        with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
+            files = [measurement_file(one, Path(folder) / f"data{i + 1}.csv") for i, one in enumerate(data)]
+            return self.study("fit", *files, set=set, progress=progress, **options)
+
+    def take(self, fit: StudyResult) -> None:
+        """Sets the parameters and initial values that a fit has found, for the runs to come."""
+        for unknown in fit.unknowns:
+            self._set(unknown["name"], unknown["value"])
+
+    if TYPE_CHECKING:
+
+        def _set(self, name: str, value: Any) -> None: ...
+
+    # ---- methods ----------------------------------------------------------------------------------------------------
+
+    def converge(
+        self,
+        methods: Optional[Names] = None,
+        *,
+        most_steps: Optional[int] = None,
+        tol: Optional[Iterable[float]] = None,
+        until: Optional[float] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """Measures the order of methods on this model, and the limit that rounding sets.
+
+        Parameters
+        ----------
+        methods : str or list of str, optional
+            The methods; without them the model's own.
+        most_steps : int, optional
+            The number of steps of the finest run.
+        tol : list of float, optional
+            Measures the error against these tolerances, in place of steps.
+        until : float, optional
+            The end of the runs.
+
+        Returns
+        -------
+        StudyResult
+            ``methods``, of each its ``method``, ``nominal_order``, the measured ``order`` in ``global``, ``local`` and
+            ``energy``, and ``points`` (``step``, and the errors there).
+        """
+        options.update(methods=methods, most_steps=most_steps, tol=tol, until=until)
+        return self.study("converge", set=set, progress=progress, **options)
+
+    def compare(
+        self,
+        methods: Optional[Names] = None,
+        *,
+        step: Optional[Iterable[float]] = None,
+        tol: Optional[Iterable[float]] = None,
+        until: Optional[float] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """Compares the error and the cost of methods, steps and tolerances on this model.
+
+        Parameters
+        ----------
+        methods : str or list of str, optional
+            The methods.
+        step, tol : list of float, optional
+            Fixed steps, and tolerances, each for every method that takes it.
+        until : float, optional
+            The end of the runs.
+
+        Returns
+        -------
+        StudyResult
+            ``contenders``, of each its errors over time and its cost; ``reference``.
+        """
+        options.update(methods=methods, step=step, tol=tol, until=until)
+        return self.study("compare", set=set, progress=progress, **options)
+
+    def stability(
+        self, methods: Names, *, set: Optional[Mapping[str, Any]] = None, progress: ProgressOption = None, **options: Any
+    ) -> StudyResult:
+        """The regions of stability of methods, and the largest stable step for this model.
+
+        Parameters
+        ----------
+        methods : str or list of str
+            The methods.
+
+        Returns
+        -------
+        StudyResult
+            ``methods``, of each ``real_axis_to``, ``imaginary_axis_to``, and ``largest`` with the ``step`` above
+            which it is unstable for the ``eigenvalue``.
+        """
+        return self.study("stability", _joined(methods, ",") or "", set=set, progress=progress, **options)
+
+    # ---- equations --------------------------------------------------------------------------------------------------
+
+    def steady(
+        self,
+        *,
+        mode: Optional[str] = None,
+        box: Optional[Bounds] = None,
+        starts: Optional[int] = None,
+        along: Optional[Bounds] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """The equilibria of the model and their stability, and how they move along a parameter.
+
+        Parameters
+        ----------
+        mode : str, optional
+            The mode whose equations are used.
+        box : mapping, optional
+            Where they are searched, for single states: ``{"x": (0, 5)}``.
+        starts : int, optional
+            How many points the search starts from.
+        along : mapping, optional
+            A parameter along which each equilibrium is followed: ``{"k": (1, 5)}``. ``and_`` names a second one.
+
+        Returns
+        -------
+        StudyResult
+            ``equilibria``, of each ``x`` in the order of ``states``, ``eigenvalues``, ``stability``; with ``along``
+            the branches.
+        """
+        options.update(mode=mode, box=box, starts=starts, along=along)
+        return self.study("steady", set=set, progress=progress, **options)
+
+    def linearize(
+        self,
+        at: Optional[Mapping[str, float]] = None,
+        *,
+        start: bool = False,
+        mode: Optional[str] = None,
+        time: Optional[float] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> LinearModel:
+        """The model linearized about a point, and its modes of motion.
+
+        Parameters
+        ----------
+        at : mapping, optional
+            The point, as values of single states; the others have their initial values.
+        start : bool
+            Whether it is the initial state in place of an equilibrium near it.
+        mode : str, optional
+            The mode whose equations are used.
+        time : float, optional
+            The time, where the equations depend on it.
+
+        Returns
+        -------
+        LinearModel
+            ``A``, ``B``, ``C``, ``D``, ``states``, ``inputs``, ``outputs``, ``modes``; ``to_control()``.
+        """
+        options.update(at=at, start=start, mode=mode, time=time)
+        result = self.study("linearize", set=set, progress=progress, **options)
+        assert isinstance(result, LinearModel)
+        return result
+
+    def sensitivities(
+        self,
+        param: Optional[Names] = None,
+        initial: Optional[Names] = None,
+        *,
+        of: Optional[str] = None,
+        until: Optional[float] = None,
+        output: Optional[float] = None,
+        tol: Union[float, Mapping[str, float], None] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """Derivatives of the motion by parameters and initial values.
+
+        Parameters
+        ----------
+        param : str or list of str, optional
+            The parameters.
+        initial : str or list of str, optional
+            States whose initial values are varied.
+        of : {"motion", "events", "period", "equilibrium"}, optional
+            What is differentiated.
+        until, output, tol
+            As for ``Model.run``.
+
+        Returns
+        -------
+        StudyResult
+            ``by`` (names), ``states``; ``rows.t`` has shape (n,), ``rows.x`` (n, states), ``rows.by`` (n, by, states).
+        """
+        options.update(param=param, initial=initial, of=of, until=until, output=output, tol=tol)
+        return self.study("sense", set=set, progress=progress, **options)
+
+    # ---- long motions -----------------------------------------------------------------------------------------------
+
+    def orbit(
+        self,
+        *,
+        period: Optional[float] = None,
+        settle: Optional[float] = None,
+        along: Optional[Bounds] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """A periodic orbit and its stability, and how it moves along a parameter.
+
+        Parameters
+        ----------
+        period : float, optional
+            Of the forcing, where it cannot be determined from the text.
+        settle : float, optional
+            Time for transients to decay.
+        along : mapping, optional
+            A parameter along which it is followed: ``{"k": (1, 5)}``.
+
+        Returns
+        -------
+        StudyResult
+            ``period``, ``x`` (a point of it), ``min``, ``max``, ``multipliers``, ``stable``; with ``along`` branches.
+        """
+        options.update(period=period, settle=settle, along=along)
+        return self.study("orbit", set=set, progress=progress, **options)
+
+    def section(
+        self,
+        plane: Mapping[str, float],
+        *,
+        settle: Optional[float] = None,
+        duration: Optional[float] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """A Poincare section: the states where the motion crosses a plane upwards.
+
+        Parameters
+        ----------
+        plane : mapping
+            The plane: ``{"x": 0}``.
+        settle, duration : float, optional
+            Time before the section, and of it.
+        """
+        options.update(section=plane, settle=settle, duration=duration)
+        return self.study("orbit", set=set, progress=progress, **options)
+
+    def lyapunov(
+        self,
+        *,
+        settle: Optional[float] = None,
+        duration: Optional[float] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """The Lyapunov exponents: how fast neighbouring motions part.
+
+        Parameters
+        ----------
+        settle, duration : float, optional
+            Time before they are measured, and in which they are.
+
+        Returns
+        -------
+        StudyResult
+            ``exponents`` in falling order, ``spread`` of each, ``averaged`` (the time).
+        """
+        options.update(settle=settle, duration=duration, lyapunov=True)
+        return self.study("orbit", set=set, progress=progress, **options)
+
+    def phase(
+        self,
+        *,
+        box: Optional[Bounds] = None,
+        spread: Optional[int] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """The phase plane of a model with two states: equilibria, nullclines, separatrices, motions.
+
+        Parameters
+        ----------
+        box : mapping, optional
+            The region: ``{"x": (-2, 2), "y": (-1, 1)}``.
+        spread : int, optional
+            The number of motions.
+        """
+        options.update(box=box, spread=spread)
+        return self.study("phase", set=set, progress=progress, **options)
+
+    def explore(
+        self,
+        *,
+        starts: Optional[int] = None,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
+    ) -> StudyResult:
+        """An overview: a run, equilibria, orbits, and what the parameters do.
+
+        Parameters
+        ----------
+        starts : int, optional
+            How many points the search for equilibria starts from.
+        """
+        options.update(starts=starts)
+        return self.study("explore", set=set, progress=progress, **options)
+
+    def verify(self, *, progress: ProgressOption = None) -> StudyResult:
+        """Runs the model as its text has it, and tests its checks.
+
+        Returns
+        -------
+        StudyResult
+            ``checks_passed``, ``checks_found``, ``models`` with each check.
+
+        Warns
+        -----
+        ModelWarning
+            A check does not hold.
+        """
+        answer = self._answer(["verify", "-"], progress)
+        return self._result("verify", answer)
+
+    def report(
+        self,
+        out: Union[str, "os.PathLike[str]"],
+        with_: Union[str, Sequence[str]] = (),
+        *,
+        progress: ProgressOption = None,
+    ) -> StudyResult:
+        """Writes a page with the model as its text has it, its run, and studies.
+
+        Parameters
+        ----------
+        out : path
+            The page, .html.
+        with_ : str or list of str
+            Studies as on the command line: ``"steady --along k=1..5"``.
+        """
+        studies = [with_] if isinstance(with_, str) else list(with_)
+        arguments = ["report", "-", f"--out={os.path.abspath(os.fsdecode(out))}"]
+        return self._result("report", self._answer(arguments + [f"--with={one}" for one in studies], progress))
+
+
+# ---- options as texts -----------------------------------------------------------------------------------------------
+
+
+def _dashed(name: str) -> str:
+    return name.rstrip("_").replace("_", "-")
+
+
+def _joined(names: Any, by: str) -> Optional[str]:
+    return names if names is None or isinstance(names, str) else by.join(str(name) for name in names)
+
+
+def _told_apart(
+    declared: Mapping[str, Mapping[str, Any]], options: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Options of the verb, without those that are None; and what is left: parameters."""
+    names = {_dashed(name) for name in options}
+    own = {name for name in names if f"--{name}" in declared or f"-{name}" in declared} - {"json", "set", "help"}
+    asked = {_dashed(name): value for name, value in options.items() if _dashed(name) in own and value is not None}
+    unknown = {name: value for name, value in options.items() if _dashed(name) not in own}
+    return asked, unknown
+
+
+def _arguments(verb: str, declared: Mapping[str, Mapping[str, Any]], asked: Mapping[str, Any]) -> list[str]:
+    arguments: list[str] = []
+    for name, value in asked.items():
+        long = f"--{name}" if f"--{name}" in declared else f"-{name}"
+        option = declared[long]
+        if not option["value"]:
+            if not isinstance(value, (bool, np.bool_)):
+                raise TypeError(f"{name} of {verb} is True or False, not {value!r}")
+            texts: list[Optional[str]] = [None] if value else []
+        else:
+            texts = list(_texts_of(f"{name} of {verb}", option, value))
+        for text in texts:
+            arguments += [long] if text is None else [f"{long}={text}"] if long.startswith("--") else [long, text]
+    return arguments
+
+
+def _texts_of(name: str, option: Mapping[str, Any], value: Any) -> list[str]:
+    kind = option["value"]
+    if isinstance(value, Mapping):
+        pairs = [f"{key}={_text_of(name, one)}" for key, one in value.items()]
+        if ";" in kind:
+            return [";".join(pairs)]
+        if len(pairs) > 1 and not option["repeated"]:
+            raise TypeError(f"{name} takes one name: {{{next(iter(value))!r}: ...}}")
+        return pairs
+    if "FILE" in kind and not isinstance(value, (list, tuple)):
+        return [os.path.abspath(os.fsdecode(value))]
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        return [_text_of(name, value)]
+    texts = [text for one in value for text in (_texts_of(name, option, one) if isinstance(one, Mapping)
+                                                else [_text_of(name, one)])]  # fmt: skip
+    if kind in _LISTS:
+        return [",".join(texts)] if texts else []
+    if not option["repeated"]:
+        raise TypeError(f"{name} takes one value, not {value!r}")
+    return texts
+
+
+def _text_of(name: str, value: Any) -> str:
+    """A number, a name, or a range."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple) and len(value) == 2:
+        return "..".join("" if end is None else _text_of(name, end) for end in value)
+    if isinstance(value, (bool, np.bool_)) or np.ndim(value) != 0:
+        raise TypeError(f"{name} cannot be {value!r}")
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} cannot be {value!r}") from None
+
+
+# ---- sweeps ---------------------------------------------------------------------------------------------------------
+
+
+def _is_several(value: Any) -> bool:
+    return not isinstance(value, (str, bytes, Mapping)) and np.ndim(value) == 1
+
+
+def _sentences_of(vary: Any) -> list[str]:
+    """What is varied, in the words of the language."""
+    if vary is None:
+        return []
+    if isinstance(vary, str):
+        return [vary]
+    if not isinstance(vary, Mapping):
+        return [str(one) for one in vary]
+    return [f"{name} {_values_in_words(name, values)}" for name, values in vary.items()]
+
+
+def _values_in_words(name: str, values: Any) -> str:
+    if isinstance(values, str):
+        return values
+    if isinstance(values, tuple) and len(values) == 3 and isinstance(values[2], int):
+        low, high, count = values
+        return f"from {_text_of(name, low)} to {_text_of(name, high)} count {count}"
+    if not _is_several(values) or len(values) == 0:
+        raise TypeError(f"`{name}` is varied by an array, by (low, high, count) or by words, not by {values!r}")
+    numbers = [_text_of(name, value) for value in values]
+    if not np.isfinite(np.asarray(values, dtype=float)).all():
+        raise ValueError(f"`{name}` is varied by finite numbers")
+    return f"in ({', '.join(numbers)})"
+
+
+def _dataset_of(xarray: Any, table: Path, answer: Answer) -> Any:
+    """The table, in memory; None where there is none. An interrupted sweep has named it otherwise."""
+    named = answer.json.get("table")
+    places = [table] + ([Path(named)] if named else []) + sorted(table.parent.glob(f"{table.stem}.unfinished*.nc"))
+    for place in places:
+        if place.exists():
+            engine = "scipy" if _has("scipy") else None
+            with xarray.open_dataset(place, engine=engine) as data:
+                loaded = data.load()
+            loaded.attrs["statistics"] = answer.json.get("kept")
+            return loaded
+    return None
+
+
+def _has(package: str) -> bool:
+    import importlib.util
+
+    return importlib.util.find_spec(package) is not None
