@@ -27,4 +27,19 @@ __all__ = [
     "__version__",
     "solve_bvp",
     "solve_ivp",
+from .errors import CommandError, ContinuoError, Interrupted, ModelError, ModelWarning, RunError
+from .magic import load_ipython_extension, unload_ipython_extension
+from .model import Model
+
+__all__ = [
+    "CommandError",
+    "ContinuoError",
+    "Interrupted",
+    "Model",
+    "ModelError",
+    "ModelWarning",
+    "RunError",
+    "__version__",
+    "load_ipython_extension",
+    "unload_ipython_extension",
 ]

@@ -65,16 +65,16 @@ class CommandError(ContinuoError, RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a computation. What was computed until then is kept.
+    """Ctrl-C has ended a computation. What was computed until then is kept.
 
     Attributes
     ----------
     result : object or None
-        What was computed; None where there was nothing yet.
+        What was computed, of the type that the function would have returned; None where there was nothing yet.
     """
 
-    def __init__(self, text: str = "interrupted", result: Any = None) -> None:
-        super().__init__(text)
+    def __init__(self, message: str = "interrupted", result: Any = None) -> None:
+        super().__init__(message)
         self.result = result
 
     @property

@@ -8,8 +8,9 @@ import os
 import re
 import threading
 import warnings
+import weakref
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Union
 
 from . import _continuo
 from .errors import Interrupted, ModelError, ModelWarning, RunError, parsed
@@ -17,9 +18,7 @@ from .model_run import Run
 from .progress_bar import ProgressOption, watcher
 from .studies import Studies
 from .values import SettableValues, Value, Values, did_you_mean, table_html
-
-if TYPE_CHECKING:
-    from .view import View
+from .view import View
 
 Number = Union[float, int, str]
 Tolerance = Union[float, Mapping[str, float]]
@@ -100,7 +99,7 @@ class Model(Studies):
         _warn(message_text)
         for attribute, value in {
             "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path, "_folder": folder,
-            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {},
+            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {}, "_views": weakref.WeakSet(),
         }.items():  # fmt: skip
             object.__setattr__(self, attribute, value)
 
@@ -127,7 +126,8 @@ class Model(Studies):
         for attribute, value in self.__dict__.items():
             object.__setattr__(other, attribute, value)
         for attribute, value in {
-            "_given": dict(self._given), "_initial": dict(self._initial), "_lock": threading.Lock()
+            "_given": dict(self._given), "_initial": dict(self._initial), "_lock": threading.Lock(),
+            "_views": weakref.WeakSet(),
         }.items():  # fmt: skip
             object.__setattr__(other, attribute, value)
         return other
@@ -266,6 +266,9 @@ class Model(Studies):
     def _set(self, name: str, value: Any) -> None:
         kind, column, number = self._resolved(name, value)
         (self._initial if kind == "initial" else self._given)[column] = number
+        for view in list(self._views):
+            if kind != "initial" and not view.closed:
+                view.set(column, number)
 
     def _forget(self, name: str) -> None:
         self._given.pop(name, None)
@@ -390,8 +393,8 @@ class Model(Studies):
             Whether a run that does not reach its end raises RunError. With False it is returned, and its ``outcome``
             is false.
         progress : callable, bool or None
-            Called with the part that is done, 0 to 1, ten times a second; True shows a bar, False none; None shows
-            one where somebody watches. What it raises ends the run.
+            Called with the time and the part that is done, ``progress(t, part)``, ten times a second; True shows a
+            bar, False none; None shows one where somebody watches. What it raises ends the run.
         **values
             Parameters, inputs without a file, and initial values of states by name: ``g=1.62``. Numbers are in the
             unit of the declaration; texts such as ``"3 km/h"`` are converted.
@@ -466,7 +469,7 @@ class Model(Studies):
 
     # ---- notebooks --------------------------------------------------------------------------------------------------
 
-    def view(self, *, width: Union[int, str] = "100%", height: int = 640, timeout: float = 30.0) -> "View":
+    def view(self, *, width: Union[int, str] = "100%", height: int = 640, timeout: float = 30.0) -> View:
         """The live view: the motion as a drawing with sliders, in the notebook or in the browser.
 
         A slider moved there changes this model: ``model.k`` follows. ``model.k = 3`` here moves the slider there.
@@ -484,8 +487,6 @@ class Model(Studies):
         View
             Shows itself where it is the last line of a cell.
         """
-        from .view import View
-
         return View(self, width=width, height=height, timeout=timeout)
 
     def __repr__(self) -> str:

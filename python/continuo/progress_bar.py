@@ -9,7 +9,7 @@ from typing import Any, Callable, Optional, Union
 PATIENCE = 0.5  # seconds; what is shorter shows nothing
 PAUSE = 0.1
 
-ProgressOption = Union[None, bool, Callable[[float], object]]
+ProgressOption = Union[None, bool, Callable[..., object]]
 
 
 def in_notebook() -> bool:
@@ -39,7 +39,7 @@ def duration(seconds: float) -> str:
 class ProgressBar:
     """Shows the part that is done, from half a second on, and is gone at the end.
 
-    Use it with ``with``; call it with the part that is done, 0 to 1.
+    Call it with the part that is done, 0 to 1, as the last argument.
     """
 
     def __init__(self, what: str = "") -> None:
@@ -49,14 +49,8 @@ class ProgressBar:
         self._display: Any = None
         self._is_shown = False
 
-    def __enter__(self) -> "ProgressBar":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def __call__(self, part: float) -> None:
-        now = time.monotonic()
+    def __call__(self, *place_and_part: float) -> None:
+        part, now = place_and_part[-1], time.monotonic()
         if now < self._next:
             return
         self._next = now + PAUSE
@@ -94,10 +88,20 @@ def _html(text: str) -> Any:
     return HTML(text)
 
 
-def watcher(progress: ProgressOption, what: str) -> tuple[Optional[Callable[[float], object]], Callable[[], None]]:
-    """What is to be called with the part that is done, or None; and what is to be called at the end."""
+def watcher(progress: ProgressOption, what: str) -> tuple[Optional[Callable[..., object]], Callable[[], None]]:
+    """What is to be called with the part that is done as its last argument, or None; what is to be called at the end.
+
+    Parameters
+    ----------
+    progress : callable, bool or None
+        True shows a bar, None shows one where somebody watches.
+    what : str
+        Stands beside the bar.
+    """
     if callable(progress):
         return progress, lambda: None
+    if progress not in (True, False, None):
+        raise TypeError(f"progress is a function, True, False or None, not {progress!r}")
     if progress is False or (progress is None and not is_watched()):
         return None, lambda: None
     bar = ProgressBar(what)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import tempfile
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from .command import Answer, options_of, run_command
 from .errors import Interrupted, ModelError, ModelWarning, RunError
 from .measurements import measurement_file
 from .optional import needed
-from .progress import ProgressOption, in_notebook, watcher
+from .progress_bar import ProgressOption, in_notebook, watcher
 from .study_result import LinearModel, StudyResult
 from .values import did_you_mean
 
@@ -75,7 +76,7 @@ class Studies:
         set : mapping, optional
             Parameters by names that are no keywords of Python.
         progress : callable, bool or None
-            As for ``Model.run``.
+            Called with the part that is done, 0 to 1; True shows a bar, None shows one where somebody watches.
         **options
             Options of the verb, and parameters of the model.
 
@@ -198,9 +199,9 @@ class Studies:
         RunError
             Runs failed; ``error.result`` is the Dataset of all.
         Interrupted
-            ``result`` is the Dataset of the runs that were made.
+            ``result`` is an UnfinishedSweep: ``error.result.resume()`` makes the runs that are missing.
         """
-        xarray = needed("xarray", "model.sweep()")
+        needed("xarray", "model.sweep()")
         sentences = _sentences_of(vary)
         arrays = [name for name, value in options.items() if _is_several(value) and f"--{_dashed(name)}" not in
                   options_of("sweep")]  # fmt: skip
@@ -210,22 +211,35 @@ class Studies:
         declared = options_of("sweep")
         asked, values = _told_apart(declared, options)
         given = self._settings_as_options(declared, "sweep", values, set)
-        with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
-            table = Path(os.path.abspath(os.fsdecode(out))) if out is not None else Path(folder) / "sweep.nc"
-            if table.suffix != ".nc":
-                raise ValueError(f"out is the name of a netCDF file, such as sweep.nc, not {table.name}")
-            asked["out"] = str(table)
-            answer = self._answer(["sweep", "-", *given, *_arguments("sweep", declared, asked)], progress)
-            data = _dataset_of(xarray, table, answer)
+        folder = tempfile.TemporaryDirectory(prefix="continuo-")
+        table = Path(os.path.abspath(os.fsdecode(out))) if out is not None else Path(folder.name) / "sweep.nc"
+        if table.suffix != ".nc":
+            raise ValueError(f"out is the name of a netCDF file, such as sweep.nc, not {table.name}")
+        asked["out"] = str(table)
+        arguments = ["sweep", "-", *given, *_arguments("sweep", declared, asked)]
+        return self._made_sweep(arguments, table, folder, check, progress)
+
+    def _made_sweep(
+        self,
+        arguments: list[str],
+        table: Path,
+        folder: "tempfile.TemporaryDirectory[str]",
+        check: bool,
+        progress: ProgressOption,
+    ) -> Any:
+        answer = self._answer(arguments, progress)
+        if answer.was_interrupted:
+            again = arguments if "--resume" in arguments else [*arguments, "--resume"]
+            rest = UnfinishedSweep(
+                lambda: self._made_sweep(again, table, folder, check, progress),
+                answer.json.get("done", 0), answer.json.get("runs", 0),
+            )  # fmt: skip
+            raise Interrupted("the sweep was interrupted; error.result.resume() makes the runs that are missing", rest)
+        data = _dataset_of(table, answer)
+        if data is not None and answer.exit == 3 and not check:
+            return data
         try:
-            with warnings.catch_warnings():
-                if not check and data is not None and answer.exit == 3:
-                    warnings.simplefilter("ignore", ModelWarning)
-                    answer.exit = 0
-                self._result("sweep", answer)
-        except Interrupted as error:
-            error.result = data
-            raise
+            self._result("sweep", answer)
         except RunError as error:
             error.result = data
             raise
@@ -749,21 +763,32 @@ def _values_in_words(name: str, values: Any) -> str:
     return f"in ({', '.join(numbers)})"
 
 
-def _dataset_of(xarray: Any, table: Path, answer: Answer) -> Any:
-    """The table, in memory; None where there is none. An interrupted sweep has named it otherwise."""
-    named = answer.json.get("table")
-    places = [table] + ([Path(named)] if named else []) + sorted(table.parent.glob(f"{table.stem}.unfinished*.nc"))
-    for place in places:
-        if place.exists():
-            engine = "scipy" if _has("scipy") else None
-            with xarray.open_dataset(place, engine=engine) as data:
-                loaded = data.load()
-            loaded.attrs["statistics"] = answer.json.get("kept")
-            return loaded
-    return None
+def _dataset_of(table: Path, answer: Answer) -> Any:
+    """The table, in memory; None where there is none."""
+    if not table.exists():
+        return None
+    engine = "scipy" if importlib.util.find_spec("scipy") else None  # scipy reads classic netCDF without netCDF4
+    with needed("xarray", "model.sweep()").open_dataset(table, engine=engine) as data:
+        loaded = data.load()
+    loaded.attrs["statistics"] = answer.json.get("kept")
+    return loaded
 
 
-def _has(package: str) -> bool:
-    import importlib.util
+class UnfinishedSweep:
+    """A sweep that was interrupted. The runs that were made are kept as long as this object is.
 
-    return importlib.util.find_spec(package) is not None
+    Attributes
+    ----------
+    done, runs : int
+        How many were made, of how many.
+    """
+
+    def __init__(self, resume: Callable[[], Any], done: int, runs: int) -> None:
+        self._resume, self.done, self.runs = resume, done, runs
+
+    def resume(self) -> Any:
+        """Makes the runs that are missing, and returns the Dataset of all."""
+        return self._resume()
+
+    def __repr__(self) -> str:
+        return f"<UnfinishedSweep: {self.done} of {self.runs} runs; resume() makes the others>"

@@ -56,7 +56,7 @@ model::Experiment experiment_of(const py::dict& asked) {
   return experiment;
 }
 
-/// Makes a function of the part that is done of one of the place.
+/// Makes a function of the place alone of one of the place and the part that is done.
 class PartTeller {
  public:
   PartTeller(const LoadedModel& model, const model::Experiment& experiment, py::object tell) : tell_(std::move(tell)) {
@@ -73,7 +73,7 @@ class PartTeller {
     if (tell_.is_none()) return tell_;
     return py::cpp_function([tell = tell_, from = from_, to = to_](double place) {
       const double part = (place - from) / (to - from);
-      tell(part < 0 ? 0 : part > 1 ? 1 : part);
+      tell(place, part < 0 ? 0 : part > 1 ? 1 : part);
     });
   }
   [[nodiscard]] double begin() const { return from_; }
