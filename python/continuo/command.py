@@ -34,7 +34,7 @@ class Answer:
     @property
     def failed(self) -> bool:
         """Whether there is no result."""
-        return self.json.get("layout", "continuo.failure/1") == "continuo.failure/1"
+        return bool(self.json.get("layout", "continuo.failure/1") == "continuo.failure/1")
 
     @property
     def messages(self) -> list[Message]:

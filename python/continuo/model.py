@@ -10,21 +10,37 @@ import threading
 import warnings
 import weakref
 from pathlib import Path
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Iterable, Mapping, NamedTuple, Optional, Union
 
 from . import _continuo
 from .errors import Interrupted, ModelError, ModelWarning, RunError, parsed
 from .model_run import Run
 from .progress_bar import ProgressOption, watcher
+from .run_options import (
+    Tolerance,
+    contents,
+    count_option,
+    number,
+    number_or_text,
+    put_numbers,
+    put_tolerances,
+    read_setting,
+    text_option,
+    warn,
+)
 from .studies import Studies
 from .values import SettableValues, Value, Values, did_you_mean, table_html
 from .view import View
 
-Number = Union[float, int, str]
-Tolerance = Union[float, Mapping[str, float]]
-
 _AT_START = re.compile(r"(.+)\(([^()]*)\)$")  # x(0)
-_BARE_UNIT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s+([^\W\d_%°][^\[\]]*?)\s*$")  # 3 km/h
+
+
+class _Setting(NamedTuple):
+    """What a name stands for: where a state begins, or a parameter or an input; its own name; the value in its unit."""
+
+    is_initial: bool
+    name: str
+    value: float
 
 
 class Model(Studies):
@@ -66,8 +82,16 @@ class Model(Studies):
     """
 
     _native: _continuo.Model
-    _given: dict[str, float]
-    _initial: dict[str, float]
+    _given: dict[str, float]  # parameters and inputs that are set
+    _initial: dict[str, float]  # states that begin elsewhere
+    _mode: str
+    _path: Optional[Path]
+    _folder: Path
+    _source_name: bytes
+    _lock: threading.Lock
+    _sized: tuple[Any, ...]  # settings that decide sizes, and the model with these
+    _parts: dict[str, Any]
+    _views: weakref.WeakSet[View]
 
     def __init__(
         self,
@@ -80,8 +104,9 @@ class Model(Studies):
         if (file is None) == (text is None):
             raise TypeError('Model takes a file, Model("ball.sim"), or a text, Model(text="...")')
         if file is not None:
-            path = Path(os.fsdecode(file))
-            source, source_name = _contents(path), os.fsencode(path)
+            path: Optional[Path] = Path(os.fsdecode(file))
+            assert path is not None
+            source, source_name = contents(path), os.fsencode(path)
             folder = path.absolute().parent
         else:
             assert text is not None
@@ -96,7 +121,7 @@ class Model(Studies):
         message_text, data = parsed(messages)
         if loaded is None:
             raise ModelError(message_text or "the text is no model", data)
-        _warn(message_text)
+        warn(message_text)
         for attribute, value in {
             "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path, "_folder": folder,
             "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {}, "_views": weakref.WeakSet(),
@@ -166,14 +191,16 @@ class Model(Studies):
         """The events, as the text writes them."""
         return self._native.events()
 
-    def _part(self, name: str) -> Any:
-        """Lists of names with their units, of the text as it is with the present sizes of families."""
-        native = self._present()
-        if self._parts.get("of") is not native:
-            object.__setattr__(self, "_parts", {"of": native})
-        if name not in self._parts:
-            self._parts[name] = getattr(native, name)()
-        return self._parts[name]
+    def _part(self, name: str, native: Optional[_continuo.Model] = None) -> Any:
+        """Lists of names with their units, of the model with the present sizes of families or of this one."""
+        native = self._present() if native is None else native
+        parts = self._parts
+        if parts.get("of") is not native:
+            parts = {"of": native}
+            object.__setattr__(self, "_parts", parts)
+        if name not in parts:
+            parts[name] = getattr(native, name)()
+        return parts[name]
 
     def _values_at_start(self) -> tuple[list[float], list[float], list[float]]:
         return self._present().values(self._given)
@@ -194,8 +221,11 @@ class Model(Studies):
 
     def _read_states(self) -> dict[str, Value]:
         values = self._values_at_start()[2]
+        for name in sorted(self._initial):  # u[3] comes after u, its family
+            for place in self._present().states_named(name):
+                values[place] = self._initial[name]
         return {
-            name: Value(self._initial.get(name, value), unit, "algebraic" if algebraic else "")
+            name: Value(value, unit, "algebraic" if algebraic else "")
             for (name, unit, algebraic, _), value in zip(self._part("states"), values)
         }
 
@@ -264,41 +294,41 @@ class Model(Studies):
     # ---- settings ---------------------------------------------------------------------------------------------------
 
     def _set(self, name: str, value: Any) -> None:
-        kind, column, number = self._resolved(name, value)
-        (self._initial if kind == "initial" else self._given)[column] = number
+        setting = self._resolved(name, value, self._present())
+        (self._initial if setting.is_initial else self._given)[setting.name] = setting.value
         for view in list(self._views):
-            if kind != "initial" and not view.closed:
-                view.set(column, number)
+            if not setting.is_initial and not view.closed:
+                view.set(setting.name, setting.value)
 
     def _forget(self, name: str) -> None:
         self._given.pop(name, None)
         self._initial.pop(name, None)
 
-    def _resolved(self, name: str, value: Any) -> tuple[str, str, float]:
-        """What a name stands for, "parameter" or "initial", its own name, and the value in its unit."""
-        parts: dict[str, Any] = {one[0]: one for one in self._part("parameters")}
-        if name in parts:
-            number, low_high = _number_or_text(name, value), parts[name][3]
-            if isinstance(number, float) and (low_high is None or low_high[0] <= number <= low_high[1]):
-                return "parameter", name, number
-            return "parameter", name, _read(self._native.read_parameter, name, number)
-        inputs = {one[0]: one for one in self._part("inputs")}
+    def _resolved(self, name: str, value: Any, native: _continuo.Model, options: Iterable[str] = ()) -> _Setting:
+        """What a name stands for. `options`: names that may have been meant besides."""
+        parameters: dict[str, Any] = {one[0]: one for one in self._part("parameters", native)}
+        if name in parameters:
+            given, low_high = number_or_text(name, value), parameters[name][3]
+            if isinstance(given, float) and (low_high is None or low_high[0] <= given <= low_high[1]):
+                return _Setting(False, name, given)
+            return _Setting(False, name, read_setting(native.read_parameter, name, given))
+        inputs = {one[0]: one for one in self._part("inputs", native)}
         if name in inputs:
-            number = _number_or_text(name, value)
+            given = number_or_text(name, value)
             if inputs[name][4]:
                 raise ModelError(f"the input `{name}` follows a file: the text says which")
-            if not isinstance(number, float):
+            if not isinstance(given, float):
                 raise ModelError(f"the input `{name}` is set by a number, in {inputs[name][1] or 'no unit'}")
-            return "parameter", name, number
+            return _Setting(False, name, given)
         state = name
         at_start = _AT_START.match(name)
-        if at_start and not self._native.states_named(name):
+        if at_start and not native.states_named(name):
             state = at_start.group(1).strip()
             self._check_start(name, at_start.group(2))
-        if self._native.states_named(state):
-            number = _number_or_text(name, value)
-            return "initial", state, _read(self._native.read_initial, state, number)
-        names = [*parts, *inputs, *(one[0] for one in self._part("states")[:1000])]
+        if native.states_named(state):
+            given = number_or_text(name, value)
+            return _Setting(True, state, read_setting(native.read_initial, state, given))
+        names = [*parameters, *inputs, *(one[0] for one in self._part("states", native)[:1000]), *options]
         raise ModelError(f"the model has no parameter, input or state `{name}`; {did_you_mean(name, names)}".rstrip("; "))
 
     def _check_start(self, name: str, time: str) -> None:
@@ -311,13 +341,21 @@ class Model(Studies):
             raise ModelError(f"`{name}` cannot be set: the run begins at t = {start:g}")
 
     def _resolved_all(
-        self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+        self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]] = None, options: Iterable[str] = ()
     ) -> tuple[dict[str, float], dict[str, float]]:
-        """Parameters and initial values: those that are set, then these."""
+        """Parameters with inputs, and initial values: those that are set, then these."""
         given, initial = dict(self._given), dict(self._initial)
-        for name, value in [*values.items(), *(more or {}).items()]:
-            kind, column, number = self._resolved(name, value)
-            (initial if kind == "initial" else given)[column] = number
+        structural = self._structural_names()
+        both = [*values.items(), *(more or {}).items()]
+        # Those that decide sizes come first: they decide which other names there are.
+        for decides_size in (True, False):
+            native = self._present(given)
+            for name, value in both:
+                if not isinstance(name, str):
+                    raise TypeError(f"set is a mapping from names, not from {name!r}")
+                if (name in structural) == decides_size:
+                    setting = self._resolved(name, value, native, options)
+                    (initial if setting.is_initial else given)[setting.name] = setting.value
         return given, initial
 
     def _present(self, given: Optional[Mapping[str, float]] = None) -> _continuo.Model:
@@ -419,16 +457,16 @@ class Model(Studies):
             Warnings of the library, and checks of the model that do not hold in a run of it as it is written.
         """
         self._warn_of_shadowed(values)
-        given, initial = self._resolved_all(values, set)
+        given, initial = self._resolved_all(values, set, _RUN_OPTIONS)
         asked: dict[str, Any] = {"parameters": given, "initial": initial}
-        _put_numbers(asked, to=until, step=step, max_step=max_step)
-        _put_tolerances(asked, tol, rtol, atol)
+        put_numbers(asked, to=until, step=step, max_step=max_step)
+        put_tolerances(asked, tol, rtol, atol)
         if method is not None:
-            asked["method"] = _text("method", method)
+            asked["method"] = text_option("method", method)
         if output is not None:
-            asked.update({"output_steps": True} if output == "steps" else {"output": _number("output", output)})
+            asked["output_steps" if output == "steps" else "output"] = output == "steps" or number("output", output)
         if max_steps is not None:
-            asked["max_steps"] = _count("max_steps", max_steps)
+            asked["max_steps"] = count_option("max_steps", max_steps)
         if estimate_error:
             asked["estimate_error"] = True
         changes = [until, method, tol, rtol, atol, step, max_step, max_steps]
@@ -454,9 +492,9 @@ class Model(Studies):
             raise (ModelError if asked_wrongly else RunError)(text or "there is no run", data)
         if not run.outcome and check:
             raise RunError(text or str(run.outcome), data, run)
-        _warn(text)
+        warn(text)
         if as_written:
-            _warn("\n".join(one.message for one in run.checks if not one))
+            warn("\n".join(one.message for one in run.checks if not one))
         return run
 
     def _warn_of_shadowed(self, values: Mapping[str, Any]) -> None:
@@ -465,7 +503,7 @@ class Model(Studies):
             names = frozenset(name for name in self._settable() if name in _RUN_OPTIONS)
             object.__setattr__(self, "_shadowed", names)
         for name in self.__dict__["_shadowed"]:
-            _warn(f'`{name}` is an option of run(); the parameter of this name is set by set={{"{name}": ...}}')
+            warn(f'`{name}` is an option of run(); the parameter of this name is set by set={{"{name}": ...}}')
 
     # ---- notebooks --------------------------------------------------------------------------------------------------
 
@@ -502,105 +540,3 @@ class Model(Studies):
 
 
 _RUN_OPTIONS = frozenset(Model.run.__kwdefaults__) | {"until"}
-
-
-# ---- what stands behind a keyword -----------------------------------------------------------------------------------
-
-
-def _warn(text: str) -> None:
-    if text:
-        warnings.warn(text, ModelWarning, stacklevel=_outside())
-
-
-def _outside() -> int:
-    """How many frames lie between the warning and whoever called the package."""
-    import sys
-
-    depth, frame = 1, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("continuo."):
-        depth, frame = depth + 1, frame.f_back
-    return depth
-
-
-def _contents(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except FileNotFoundError as error:
-        near = difflib.get_close_matches(path.name, [one.name for one in path.parent.glob("*.sim")], n=1)
-        hint = f"; did you mean {path.parent / near[0]}?" if near else ""
-        if "\n" in str(path):
-            hint = '; a text is given by Model(text="...")'
-        raise FileNotFoundError(error.errno, f"{error.strerror}{hint}", str(path)) from None
-
-
-def _number(name: str, value: Any) -> float:
-    """A finite number.
-
-    Raises
-    ------
-    TypeError, ValueError
-        The message names what was given.
-    """
-    if isinstance(value, (bool, str, bytes)) or getattr(value, "ndim", 0) != 0:
-        raise TypeError(f"{name} is one number, not {value!r}")
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        hint = "; several values are a sweep: model.sweep(...)" if hasattr(value, "__len__") else ""
-        raise TypeError(f"{name} is one number, not {value!r}{hint}") from None
-    if not math.isfinite(number):
-        raise ValueError(f"{name} is a finite number, not {number}")
-    return number
-
-
-def _number_or_text(name: str, value: Any) -> Union[float, str]:
-    if not isinstance(value, str):
-        return _number(name, value)
-    bare = _BARE_UNIT.match(value)
-    return f"{bare.group(1)} [{bare.group(2)}]" if bare else value
-
-
-def _read(reader: Any, name: str, value: Union[float, str]) -> float:
-    """The value as the command line reads it, in the unit of its declaration."""
-    number, messages = reader(f"{name} = {value!r}" if isinstance(value, float) else f"{name} = {value}")
-    text, data = parsed(messages)
-    if number is None:
-        raise ModelError(text, data)
-    _warn(text)
-    return float(number)
-
-
-def _text(name: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"{name} is a str, not {value!r}")
-    return value
-
-
-def _count(name: str, value: Any) -> int:
-    number = _number(name, value)
-    if number != int(number) or number < 1:
-        raise ValueError(f"{name} is a whole number from 1 on, not {value!r}")
-    return int(number)
-
-
-def _put_numbers(asked: dict[str, Any], **numbers: Any) -> None:
-    for name, value in numbers.items():
-        if value is not None:
-            asked[name] = _number("until" if name == "to" else name, value)
-
-
-def _put_tolerances(
-    asked: dict[str, Any], tol: Optional[Tolerance], rtol: Optional[Tolerance], atol: Optional[Tolerance]
-) -> None:
-    if tol is not None and rtol is not None:
-        raise TypeError("tol and rtol are two names of the relative tolerance: give one of them")
-    for name, value in (("rtol", rtol if tol is None else tol), ("atol", atol)):
-        if value is None:
-            continue
-        of = {key: _number(f"{name} of {key}", one) for key, one in value.items()} if isinstance(value, Mapping) else {}
-        numbers = list(of.values()) if of else [] if isinstance(value, Mapping) else [_number(name, value)]
-        for number in numbers:
-            if not number > 0 or (name == "rtol" and number >= 1):
-                kind = "between 0 and 1" if name == "rtol" else "greater than 0"
-                raise ValueError(f"{name} is {kind}, not {number:g}")
-        asked.update({f"{name}_of": of} if isinstance(value, Mapping) else {name: numbers[0]})

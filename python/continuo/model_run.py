@@ -252,7 +252,8 @@ class Run:
         """
         xarray = needed("xarray", "run.data")
         attributes, _, variables = self._part("layout")
-        data, coordinates = {}, {}
+        data: dict[str, Any] = {}
+        coordinates: dict[str, Any] = {}
         for name, dimensions, of_variable, (places, values) in variables:
             array = np.asarray(values) if places is None else self._variable(dimensions, places)
             target = coordinates if dimensions == [name] or name in dimensions else data

@@ -5,17 +5,17 @@ from __future__ import annotations
 import importlib.util
 import os
 import tempfile
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from .command import Answer, options_of, run_command
-from .errors import Interrupted, ModelError, ModelWarning, RunError
+from .errors import Interrupted, ModelError, RunError
 from .measurements import measurement_file
 from .optional import needed
 from .progress_bar import ProgressOption, in_notebook, watcher
+from .run_options import warn
 from .study_result import LinearModel, StudyResult
 from .values import did_you_mean
 
@@ -45,15 +45,14 @@ class Studies:
     if TYPE_CHECKING:
         _folder: Path
         _native: _continuo.Model
-        name: str
         _source_name: bytes
         _initial: dict[str, float]
 
         def _resolved_all(
-            self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+            self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]] = None, options: Iterable[str] = ()
         ) -> tuple[dict[str, float], dict[str, float]]: ...
 
-        def _part(self, name: str) -> Any: ...
+        def _part(self, name: str, native: Optional[_continuo.Model] = None) -> Any: ...
 
     # ---- the mechanism ----------------------------------------------------------------------------------------------
 
@@ -105,7 +104,8 @@ class Studies:
         self, declared: Mapping[str, Any], verb: str, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
     ) -> list[str]:
         """The parameters that are set, these, and initial values, as options."""
-        given, initial = self._resolved_all(values, more)
+        options = [name.strip("-").replace("-", "_") for name in declared]
+        given, initial = self._resolved_all(values, more, options)
         inputs = [one[0] for one in self._part("inputs") if one[0] in given]
         if inputs:
             raise ModelError(f"`{verb}` takes inputs as the text has them; write the value of `{inputs[0]}` there")
@@ -143,7 +143,7 @@ class Studies:
         if answer.exit == 3 or answer.exit == 1:
             raise RunError(text or f"`{verb}` did not come to its end", answer.messages, result)
         if text:
-            warnings.warn(text, ModelWarning, stacklevel=4)
+            warn(text)
         return result
 
     # ---- many runs --------------------------------------------------------------------------------------------------

@@ -38,8 +38,8 @@ class Value(float):
         number = float.__repr__(self)
         return f"{number} {self.unit}" if self.unit else number
 
-    def __getnewargs__(self) -> tuple[Any, ...]:
-        return float(self), self.unit, self.description, self.range
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Value, (float(self), self.unit, self.description, self.range)
 
 
 def did_you_mean(name: str, names: Iterable[str]) -> str:
