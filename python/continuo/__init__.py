@@ -42,4 +42,18 @@ __all__ = [
     "__version__",
     "load_ipython_extension",
     "unload_ipython_extension",
+from .expressions import TraceError, maximum, minimum, where
+from .right_hand_side import RightHandSide, expression
+from .tracing import Traced, trace
+
+__all__ = [
+    "RightHandSide",
+    "TraceError",
+    "Traced",
+    "__version__",
+    "expression",
+    "maximum",
+    "minimum",
+    "trace",
+    "where",
 ]

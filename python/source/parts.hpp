@@ -12,3 +12,4 @@ namespace continuo::python {
 void add_model(pybind11::module_& module);
 
 }  // namespace continuo::python
+void add_right_hand_side(pybind11::module_& module);
