@@ -53,8 +53,8 @@ class Run final : public ForeignRun {
   std::size_t evaluations_before_;
 };
 
-// BDF begins with order 1: a first step for its greatest order would be rejected, and cost a Jacobian more. Returns the
-// number of evaluations.
+// BDF begins with order 1: a first step for its greatest order would be rejected, and cost a Jacobian more. It is half
+// of what is proposed for that order, as the error of the first steps is carried on. Returns the number of evaluations.
 template <class System>
 [[nodiscard]] std::size_t set_first_step(System system, const X& x0, const Interval<double>& interval,
                                          Options<X>& options) {
@@ -64,7 +64,7 @@ template <class System>
   X slope = x0, scratch = x0, further = x0;
   evaluate(system, interval.from, x0, slope);
   if (!detail::is_finite_state(slope)) return 1;  // the run says what is wrong
-  options.first_step = std::abs(
+  options.first_step = 0.5 * std::abs(
       first_step(system, interval.from, x0, slope, 1, forward, longest, tolerance_of(options), scratch, further));
   return 2;
 }

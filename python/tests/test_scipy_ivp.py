@@ -12,6 +12,13 @@ DIFFERENCES = {
     "test_error_estimation": "calls a private method of SciPy's classes",
     "test_error_estimation_complex": "calls a private method of SciPy's classes",
 }
+# The same for single lines: what is tested instead.
+CHANGES = {
+    "assert res.nlu < 6": (
+        "assert res.nlu < 8",
+        "a complex component is integrated as two real ones: other step sizes, and two decompositions more by BDF",
+    ),
+}
 
 
 def _tests() -> dict[str, Any]:
@@ -29,6 +36,8 @@ def _tests() -> dict[str, Any]:
             "from scipy.integrate._ivp.base import ConstantDenseOutput",
             "from continuo.dense import ConstantDenseOutput",
         )
+        for line, (instead, _) in CHANGES.items():
+            source = source.replace(line, instead)
         names: dict[str, Any] = {"__name__": "scipy_" + path.stem, "__file__": str(path)}
         exec(compile(source, str(path), "exec"), names)
         tests.update((key, value) for key, value in names.items() if key.startswith("test_"))
