@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _continuo
 from .dense import OdeSolution
 from .errors import Interrupted
-from .options import Method, _PatternGrew, begin_run, method_of, state_of, warn_extraneous
+from .options import PatternGrew, begin_run, method_of, state_of, warn_extraneous
 from .result import OdeResult
 
 Array = npt.NDArray[Any]
@@ -80,21 +80,19 @@ def _unpacked(args: Any) -> tuple[Any, ...]:
         ) from error
 
 
-def _start(
-    fun: Any, t0: float, t1: float, y: Array, method: Method, options: dict[str, Any], **settings: Any
-) -> tuple[_continuo.Run, Any]:
-    """Run to the end; where a sparse Jacobian turns out to have more entries, once more from the beginning."""
-    grown = None
+def _run_with_pattern(
+    grown: PatternGrew, begin: Callable[[tuple[Array, Array]], _continuo.Run]
+) -> tuple[_continuo.Run, BaseException | None]:
+    """Run once more from the beginning, with the entries that a sparse Jacobian turned out to have, until it has all."""
+    rows, columns = grown.places
     while True:
-        run = begin_run(fun, t0, t1, y, method, options, grown=grown, **settings)
+        run = begin((rows, columns))
         run.run()
         error = run.take_error()
-        if not isinstance(error, _PatternGrew):
+        if not isinstance(error, PatternGrew):
             return run, error
-        rows, columns = error.places
-        grown = rows, columns if grown is None else grown
-        if grown[0] is not rows:
-            grown = np.concatenate([grown[0], rows]), np.concatenate([grown[1], columns])
+        rows = np.concatenate([rows, error.places[0]])
+        columns = np.concatenate([columns, error.places[1]])
 
 
 def solve_ivp(
@@ -191,22 +189,13 @@ def solve_ivp(
     if args is not None:
         args = _unpacked(args)
     times = None if t_eval is None else _times(t_eval, t0, t1)
-    with_events = events is not None
-    run, error = _start(
-        fun,
-        t0,
-        t1,
-        y,
-        chosen,
-        options,
-        times=times,
-        dense=dense_output,
-        events=events,
-        vectorized=vectorized,
-        args=args,
-    )
+    settings = (fun, t0, t1, y, chosen, options, times, dense_output, events, vectorized, args)
+    run = begin_run(*settings)
+    run.run()
+    error = run.take_error()
     if error is not None:
-        _raise(error, run, dense_output, with_events)
-    return result_of(run, dense_output, with_events)
-
-
+        if isinstance(error, PatternGrew):
+            run, error = _run_with_pattern(error, lambda places: begin_run(*settings, places))
+        if error is not None:
+            _raise(error, run, dense_output, events is not None)
+    return result_of(run, dense_output, events is not None)

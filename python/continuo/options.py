@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Callable, NamedTuple
 from warnings import warn
 
@@ -174,7 +175,7 @@ def _as_real(matrix: Array) -> Array:
     return real
 
 
-class _PatternGrew(Exception):
+class PatternGrew(Exception):
     """A sparse Jacobian has an entry where the pattern has none."""
 
     def __init__(self, rows: Array, columns: Array) -> None:
@@ -211,7 +212,7 @@ class SparseJacobian:
         places = np.searchsorted(self._keys, keys)
         places[places == len(self._keys)] = 0
         if np.any(self._keys[places] != keys):
-            raise _PatternGrew(coo.row, coo.col)
+            raise PatternGrew(coo.row, coo.col)
         values = np.zeros(len(self._keys))
         np.add.at(values, places, coo.data)
         return values
@@ -343,7 +344,7 @@ def begin_run(
     events: Any = None,
     vectorized: bool = False,
     args: Any = None,
-    grown: Any = None,
+    grown: tuple[Array, Array] | None = None,
 ) -> _continuo.Run:
     """Begin a run of these settings, all of them checked."""
     n = len(y)
@@ -385,7 +386,6 @@ def begin_run(
             f"`method`: {name} is for x'' = a(t, x): give `second_order=True` with a `fun` that returns accelerations, "
             "or `pairs` of a position and its velocity"
         )
-    far0, far1 = t0, t1
-    if not np.isfinite(t1):
-        far1 = FAR if t1 > 0 else -FAR
-    return _continuo.Run(fun, far0, far1, y, name, rtol, atol, max_step, times, dense, args, extras)
+    if math.isinf(t1):
+        t1 = math.copysign(FAR, t1)
+    return _continuo.Run(fun, t0, t1, y, name, rtol, atol, max_step, times, dense, args, extras)

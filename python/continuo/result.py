@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 
-def _number(x: float) -> str:
+def _number(x: Any) -> str:
     if np.isposinf(x):
         return "       inf"
     if np.isneginf(x):

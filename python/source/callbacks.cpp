@@ -27,6 +27,19 @@ void set_error(PyObject* type, const std::string& text) {
   PyErr_SetString(type, text.c_str());
 }
 
+[[nodiscard]] std::string short_text(PyObject* object) {
+  return py::repr(py::handle(object)).cast<std::string>().substr(0, 80);
+}
+
+[[nodiscard]] bool is_number(PyObject* object, bool complex_wanted) {
+  if (object == Py_None || PyUnicode_Check(object) || PyBytes_Check(object)) return false;
+  if (PyComplex_Check(object)) return complex_wanted;
+  PyFloat_AsDouble(object);
+  if (!PyErr_Occurred()) return true;
+  PyErr_Clear();
+  return false;
+}
+
 // An array of double or complex numbers of what a function has given; empty with an exception set.
 [[nodiscard]] py::object numeric_array(PyObject* result, const StateFunction& f, bool complex_wanted) {
   try {
@@ -46,26 +59,25 @@ void set_error(PyObject* type, const std::string& text) {
     if (kind == 'O') {
       // Numbers of other types, as those of fractions and decimal: each must be convertible by itself.
       const py::object flat = array.attr("ravel")();
-      for (const py::handle element : flat) {
-        if (element.is_none() || PyUnicode_Check(element.ptr()) ||
-            (PyComplex_Check(element.ptr()) && !complex_wanted)) {
+      for (const py::handle element : flat)
+        if (!is_number(element.ptr(), complex_wanted)) {
           set_error(PyExc_TypeError, f.name() + " gave a " + type_name(element.ptr()) + " where a number is needed");
           return {};
         }
-        if (!PyComplex_Check(element.ptr())) {
-          PyFloat_AsDouble(element.ptr());
-          if (PyErr_Occurred()) return {};
-        }
-      }
     } else if (kind != 'b' && kind != 'i' && kind != 'u' && kind != 'f' && kind != 'c') {
-      set_error(PyExc_TypeError, f.name() + " gave " + py::repr(py::handle(result)).cast<std::string>().substr(0, 80) +
-                                     ", a " + type_name(result) + " without numbers");
+      set_error(PyExc_TypeError,
+                f.name() + " gave " + short_text(result) + ", a " + type_name(result) + " without numbers");
       return {};
     }
     return array.attr("astype")(complex_wanted ? "complex128" : "float64", py::arg("order") = "C",
                                 py::arg("copy") = false);
   } catch (py::error_already_set& error) {
-    error.restore();
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) {
+      error.restore();
+      return {};
+    }
+    set_error(PyExc_ValueError, f.name() + " gave " + short_text(result) +
+                                    ", which is no array of numbers: " + py::str(error.value()).cast<std::string>());
     return {};
   }
 }

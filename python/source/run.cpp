@@ -63,6 +63,14 @@ void read_tolerance(const py::object& given, bool complex, double& one, std::vec
   if (!each.empty()) one = *std::ranges::min_element(each);
 }
 
+// A guard that is no number has no side, and its events would be missed.
+[[nodiscard]] bool is_known(double value, const StateFunction& guard) {
+  if (!std::isnan(value)) return true;
+  PyErr_SetString(PyExc_ValueError,
+                  (guard.name() + " is not a number here, so that its zeros cannot be found").c_str());
+  return false;
+}
+
 [[nodiscard]] py::object extra(const py::dict& extras, const char* name) {
   PyObject* found = PyDict_GetItemString(extras.ptr(), name);
   return found ? py::reinterpret_borrow<py::object>(found) : py::none();
@@ -366,7 +374,10 @@ void Run::read_events(const py::handle& events, Options<X>& options) {
     event.guard = [this, guard](double t, const X& x) {
       const GilForCallback gil(holds_gil_);
       double value = 1;
-      if (!guard->call(t, x.data(), [&](PyObject* result) { return read_number(result, *guard, &value); })) return 1.0;
+      const auto read = [&](PyObject* result) {
+        return read_number(result, *guard, &value) && is_known(value, *guard);
+      };
+      if (!guard->call(t, x.data(), read)) return 1.0;
       return value;
     };
     const double direction = fields[1].cast<double>();

@@ -85,7 +85,9 @@ Statistics Run::statistics() const {
 }
 
 py::tuple Run::summary() const {
-  const Outcome<double>& outcome = this->outcome();
+  Outcome<double> outcome = this->outcome();
+  if (outcome.ending == Ending::events_accumulate)
+    outcome.hint = "give the event an `at_limit` for what happens there, or make it terminal";
   int status = -1;
   if (outcome.ending == Ending::reached_end) status = 0;
   if (outcome.ending == Ending::stopped_by_event) status = 1;
