@@ -97,6 +97,7 @@ class ForeignRecord {
     occurred_ = true;
     changed_ = changed_ || occurrence.after != occurrence.before;
     for (const std::size_t i : occurrence.events) {
+      if (occurrence.after == occurrence.before && is_noise(run, i, occurrence.t)) continue;
       events.push_back({i, occurrence.t, occurrence.before, occurrence.after});
       if (occurrence.after == occurrence.before) move_to_root(run, events.back());
     }
@@ -109,6 +110,14 @@ class ForeignRecord {
   }
 
  private:
+  // The rounding of a guard may carry it through zero several times where it passes once.
+  template <class Run>
+  [[nodiscard]] bool is_noise(Run& run, std::size_t event, double time) const {
+    const double near = 1e-12 * (std::abs(time) + std::abs(run.step_size()));
+    for (auto last = events.rbegin(); last != events.rend() && std::abs(last->t - time) <= near; ++last)
+      if (last->number == event) return true;
+    return false;
+  }
   // An event lies just beyond its root, so that the motion goes on from there on the right side of it. One that
   // changes nothing is noted one number before, where its guard is nearer to zero: at 7 for t - 7.
   template <class Run>

@@ -32,8 +32,14 @@ class Result(dict[str, Any]):
         except KeyError:
             raise AttributeError(f"a {type(self).__name__} has no entry {name!r}: {', '.join(self)}") from None
 
-    __setattr__ = dict.__setitem__
-    __delattr__ = dict.__delitem__
+    def __setattr__(self, name: str, value: Any) -> None:
+        self[name] = value
+
+    def __delattr__(self, name: str) -> None:
+        try:
+            del self[name]
+        except KeyError:
+            raise AttributeError(name) from None
 
     def __dir__(self) -> list[str]:
         return list(self.keys())
