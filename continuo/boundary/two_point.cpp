@@ -13,7 +13,9 @@ namespace continuo::boundary {
 namespace {
 
 constexpr std::size_t most_meshes_for_conditions = 10;
-constexpr double much_too_large = 100;  // times the tolerance: such intervals are cut in three, not in two
+constexpr double most_relative_error = 0.3;  // of a solution that is one
+constexpr std::size_t most_doubts = 2;       // halving all intervals divides the error by 16, where there is a solution
+constexpr double much_too_large = 100;       // times the tolerance: such intervals are cut in three, not in two
 
 /// Into how many parts each interval is to be cut.
 std::vector<std::size_t> parts_of_intervals(const std::vector<double>& residuals, double tolerance) {
@@ -30,6 +32,12 @@ std::vector<double> inner_nodes(double first, double last, std::size_t parts) {
   return {};
 }
 
+/// Of a cubic at s.
+template <class Number>
+Number value(const std::array<Number, 4>& c, double s) {
+  return ((c[0] * s + c[1]) * s + c[2]) * s + c[3];
+}
+
 template <class Number>
 class TwoPointSearch {
  public:
@@ -43,7 +51,7 @@ class TwoPointSearch {
     for (;;) {
       std::vector<Number> z(std::move(y));
       z.insert(z.end(), p.begin(), p.end());
-      TwoPointEquations<Number> equations(functions, solution_.x, std::move(z));
+      TwoPointEquations<Number> equations(functions, solution_.x, std::move(z), std::move(known_));
       const bool begins = equations.is_finite(solution_);
       const NewtonEnding ending =
           begins ? equations.iterate(options_.tolerance, options_.condition_tolerance) : NewtonEnding::not_finite;
@@ -59,7 +67,11 @@ class TwoPointSearch {
   void keep(TwoPointEquations<Number>& equations, bool has_values) {
     solution_.y.assign(equations.y().begin(), equations.y().end());
     solution_.p.assign(equations.p().begin(), equations.p().end());
-    solution_.f = equations.f();
+    solution_.f.clear();
+    for (std::size_t k = 0; k < solution_.x.size(); ++k) {
+      const auto f = equations.f_at_node(k);
+      solution_.f.insert(solution_.f.end(), f.begin(), f.end());
+    }
     solution_.residuals = has_values ? equations.residuals()
                                      : std::vector(solution_.x.size() - 1, std::numeric_limits<double>::quiet_NaN());
     TwoPointProgress& last = solution_.last;
@@ -87,6 +99,10 @@ class TwoPointSearch {
     }
     parts_ = parts_of_intervals(solution_.residuals, options_.tolerance);
     TwoPointProgress& last = solution_.last;
+    if (std::ranges::max(parts_) == 1 && is_doubtful(equations)) {
+      if (doubts_ > most_doubts) return end(undetermined);
+      std::ranges::fill(parts_, 2);
+    }
     last.added = 0;
     for (const std::size_t parts : parts_) last.added += parts - 1;
     last.exceeds = last.nodes + last.added > options_.most_nodes;
@@ -96,34 +112,47 @@ class TwoPointSearch {
     if (last.condition <= options_.condition_tolerance) return end(solved);
     return last.iteration >= most_meshes_for_conditions && end(conditions_not_met);
   }
+  /// Where the residual, small as it is, may have made all of the solution: the conditions may then determine none.
+  bool is_doubtful(TwoPointEquations<Number>& equations) {
+    if (equations.relative_error(options_.tolerance) < most_relative_error) return false;
+    ++doubts_;
+    return true;
+  }
   bool end(TwoPointEnding ending) {
     solution_.ending = ending;
     return true;
   }
 
-  /// The mesh refined, and y there by the spline; empty where nodes would be equal in the digits of a double.
+  /// The mesh refined, and y there by the spline; empty where nodes would be equal in the digits of a double. f is
+  /// known at the old nodes, at new ones that were middles, and in the middles of intervals that are not cut.
   std::vector<Number> refine(const TwoPointEquations<Number>& equations) {
-    const std::size_t n = problem_.size;
-    std::vector<double> x{solution_.x.front()};
-    std::vector<Number> y(solution_.y.begin(), solution_.y.begin() + static_cast<std::ptrdiff_t>(n));
-    for (std::size_t k = 0; k + 1 < solution_.x.size(); ++k) {
-      const double first = solution_.x[k], last = solution_.x[k + 1];
-      for (const double node : inner_nodes(first, last, parts_[k])) {
+    const std::size_t n = problem_.size, old_nodes = solution_.x.size();
+    std::vector<double> x;
+    std::vector<Number> y;
+    known_ = {};
+    const std::vector<Number> unknown(n);
+    const auto add_slope = [&](std::span<const Number> f, bool is_known) {
+      known_.f.insert(known_.f.end(), f.begin(), f.end());
+      known_.is_known.push_back(is_known);
+    };
+    for (std::size_t k = 0; k < old_nodes; ++k) {
+      const double first = solution_.x[k];
+      x.push_back(first);
+      y.insert(y.end(), &solution_.y[k * n], &solution_.y[k * n] + n);
+      add_slope(equations.f_at_node(k), true);
+      if (k + 1 == old_nodes) break;
+      for (const double node : inner_nodes(first, solution_.x[k + 1], parts_[k])) {
         x.push_back(node);
-        for (std::size_t i = 0; i < n; ++i) {
-          const auto c = equations.spline(k, i);
-          const double s = node - first;
-          y.push_back(((c[0] * s + c[1]) * s + c[2]) * s + c[3]);
-        }
+        for (std::size_t i = 0; i < n; ++i) y.push_back(value(equations.spline(k, i), node - first));
+        add_slope(unknown, false);  // in the middle before it
+        add_slope(equations.f_in_middle(k), parts_[k] == 2);
       }
-      x.push_back(last);
-      const Number* const at_last = solution_.y.data() + (k + 1) * n;
-      y.insert(y.end(), at_last, at_last + n);
+      add_slope(equations.f_in_middle(k), parts_[k] == 1);
     }
-    const auto equal =
-        std::ranges::adjacent_find(x, [](double a, double b) { return !(a + (b - a) / 4 > a && b > a); });
-    if (equal != x.end()) {
-      solution_.where = *equal;
+    const auto is_too_short = [](double a, double b) { return !(b > a && a + (b - a) / 4 > a); };
+    const auto too_short = std::ranges::adjacent_find(x, is_too_short);
+    if (too_short != x.end()) {
+      solution_.where = *too_short;
       end(TwoPointEnding::too_fine);
       return {};
     }
@@ -135,6 +164,8 @@ class TwoPointSearch {
   const TwoPointOptions& options_;
   TwoPointSolution<Number> solution_;
   std::vector<std::size_t> parts_;
+  std::size_t doubts_ = 0;
+  KnownSlopes<Number> known_;  // on the next mesh
 };
 
 }  // namespace

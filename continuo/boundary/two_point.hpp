@@ -64,7 +64,8 @@ struct TwoPointOptions {
 };
 
 /// How it ended.
-enum class TwoPointEnding { solved, too_many_nodes, singular, conditions_not_met, not_finite, too_fine };
+/// `undetermined`: the residual is small, but its estimated effect is as large as the solution, on a finer mesh too.
+enum class TwoPointEnding { solved, too_many_nodes, singular, conditions_not_met, not_finite, too_fine, undetermined };
 
 /// What was found to be infinite or not a number.
 enum class TwoPointQuantity { derivative, conditions, jacobian };

@@ -15,6 +15,7 @@ constexpr std::size_t most_iterations = 8, most_jacobians = 4;  // on one mesh: 
 constexpr double least_damping =
     1.0 / 16;                           // a correction so damped is made whether it helps or not, where f has a value
 constexpr double least_defined = 1e-4;  // so much of a correction is tried to find a place where f has a value
+constexpr std::size_t few_intervals = 64;   // with three points each a call of f costs little more than with one
 constexpr double part_of_tolerance = 5e-2;  // which the iteration may leave of the residual
 
 template <class Number>
@@ -34,7 +35,7 @@ std::pair<Number, Number> value_and_slope(const std::array<Number, 4>& c, double
 
 template <class Number>
 TwoPointEquations<Number>::TwoPointEquations(TwoPointFunctions<Number>& functions, std::span<const double> x,
-                                             std::vector<Number> z)
+                                             std::vector<Number> z, KnownSlopes<Number> known)
     : functions_(functions),
       n_(functions.size()),
       k_(functions.parameters()),
@@ -42,48 +43,122 @@ TwoPointEquations<Number>::TwoPointEquations(TwoPointFunctions<Number>& function
       z_(std::move(z)),
       trial_(z_.size()),
       y_((2 * x.size() - 1) * n_),
-      f_(y_.size()),
+      f_(std::move(known.f)),
       equations_(z_.size()),
       correction_(z_.size()),
       matrix_(n_, k_, x.size() - 1) {
   for (std::size_t k = 0; k < intervals(); ++k) {
-    middles_.push_back(x[k] + 0.5 * length(k));
     points_.push_back(x[k]);
-    points_.push_back(middles_.back());
+    points_.push_back(x[k] + 0.5 * length(k));
   }
   points_.push_back(x.back());
-  evaluate(z_);
+  f_.resize(y_.size());
+  known.is_known.resize(points_.size());
+  evaluate_unknown(known.is_known);
 }
 
-/// f and what is left of each equation where the unknowns are z. Two calls of f: in the middles y follows from the
-/// slopes at the nodes.
 template <class Number>
-void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
-  const auto z_all = std::span(z);
-  const auto y = z_all.first(nodes() * n_), p = z_all.subspan(nodes() * n_);
-  part_f_.resize(y.size());
-  functions_.derivative(x_, y, p, part_f_);
-  for (std::size_t k = 0; k < nodes(); ++k) {
-    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(k * n_), n_,
-                y_.begin() + static_cast<std::ptrdiff_t>(2 * k * n_));
-    std::copy_n(part_f_.begin() + static_cast<std::ptrdiff_t>(k * n_), n_,
-                f_.begin() + static_cast<std::ptrdiff_t>(2 * k * n_));
-  }
-  part_y_.resize(intervals() * n_);
-  for (std::size_t k = 0; k < intervals(); ++k)
-    for (std::size_t i = 0; i < n_; ++i)
-      part_y_[k * n_ + i] = y_[(2 * k + 1) * n_ + i] =
-          (y[k * n_ + i] + y[(k + 1) * n_ + i]) * 0.5 - (slope(2 * k + 2, i) - slope(2 * k, i)) * (0.125 * length(k));
-  part_f_.resize(intervals() * n_);
-  functions_.derivative(middles_, part_y_, p, part_f_);
+void TwoPointEquations<Number>::set_nodes(const std::vector<Number>& z) {
+  for (std::size_t k = 0; k < nodes(); ++k) std::ranges::copy(at(z, k), at(y_, 2 * k).begin());
+}
+
+/// y in the middles, of the spline.
+template <class Number>
+void TwoPointEquations<Number>::set_middles() {
   for (std::size_t k = 0; k < intervals(); ++k) {
-    for (std::size_t i = 0; i < n_; ++i) {
-      const Number middle = f_[(2 * k + 1) * n_ + i] = part_f_[k * n_ + i];
-      equations_[k * n_ + i] =
-          y[(k + 1) * n_ + i] - y[k * n_ + i] - (slope(2 * k, i) + slope(2 * k + 2, i) + middle * 4) * (length(k) / 6);
+    const auto first = at(y_, 2 * k), last = at(y_, 2 * k + 2), middle = at(y_, 2 * k + 1);
+    const auto f_first = at(f_, 2 * k), f_last = at(f_, 2 * k + 2);
+    for (std::size_t i = 0; i < n_; ++i)
+      middle[i] = (first[i] + last[i]) * 0.5 - (f_last[i] - f_first[i]) * (0.125 * length(k));
+  }
+}
+
+/// The points of Lobatto's quadrature with five points that are neither ends nor middles.
+template <class Number>
+void TwoPointEquations<Number>::set_residual_points() {
+  const double from_middle = 0.5 * std::sqrt(3.0 / 7);
+  residual_x_.clear();
+  residual_y_.resize(2 * intervals() * n_), residual_yp_.resize(residual_y_.size());
+  for (std::size_t k = 0; k < intervals(); ++k) {
+    for (const double theta : {0.5 - from_middle, 0.5 + from_middle}) {
+      const std::size_t point = residual_x_.size();
+      residual_x_.push_back(x_[k] + theta * length(k));
+      for (std::size_t i = 0; i < n_; ++i)
+        std::tie(at(residual_y_, point)[i], at(residual_yp_, point)[i]) =
+            value_and_slope(spline(k, i), theta * length(k));
     }
   }
-  functions_.conditions(y.first(n_), y.last(n_), p, std::span(equations_).subspan(intervals() * n_));
+}
+
+template <class Number>
+void TwoPointEquations<Number>::add_point(double x, std::span<const Number> y) {
+  part_x_.push_back(x);
+  part_y_.insert(part_y_.end(), y.begin(), y.end());
+}
+
+/// f at the points added.
+template <class Number>
+void TwoPointEquations<Number>::evaluate_points(std::span<const Number> p) {
+  part_f_.resize(part_y_.size());
+  if (!part_x_.empty()) functions_.derivative(part_x_, part_y_, p, part_f_);
+}
+
+/// Where f is not known already. Two calls: in the middles y follows from the slopes at the nodes.
+template <class Number>
+void TwoPointEquations<Number>::evaluate_unknown(const std::vector<bool>& is_known) {
+  set_nodes(z_);
+  for (const std::size_t first : {0, 1}) {
+    if (first == 1) set_middles();
+    begin_points();
+    for (std::size_t q = first; q < points_.size(); q += 2)
+      if (!is_known[q]) add_point(points_[q], at(y_, q));
+    evaluate_points(p());
+    for (std::size_t q = first, part = 0; q < points_.size(); q += 2)
+      if (!is_known[q]) std::ranges::copy(at(part_f_, part++), at(f_, q).begin());
+  }
+  evaluate_equations(z_);
+}
+
+/// f everywhere, for the unknowns z. Where points are few, those of the residual are taken along: that saves a call at
+/// the end.
+template <class Number>
+void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
+  const auto p = std::span(z).subspan(nodes() * n_);
+  set_nodes(z);
+  begin_points();
+  for (std::size_t k = 0; k < nodes(); ++k) add_point(x_[k], at(y_, 2 * k));
+  evaluate_points(p);
+  for (std::size_t k = 0; k < nodes(); ++k) std::ranges::copy(at(part_f_, k), at(f_, 2 * k).begin());
+  set_middles();
+  has_residuals_ = intervals() <= few_intervals;
+  if (has_residuals_) set_residual_points();
+  begin_points();
+  for (std::size_t k = 0; k < intervals(); ++k) {
+    if (has_residuals_) add_point(residual_x_[2 * k], at(residual_y_, 2 * k));
+    add_point(points_[2 * k + 1], at(y_, 2 * k + 1));
+    if (has_residuals_) add_point(residual_x_[2 * k + 1], at(residual_y_, 2 * k + 1));
+  }
+  evaluate_points(p);
+  residual_f_.resize(2 * intervals() * n_);
+  for (std::size_t k = 0, part = 0; k < intervals(); ++k) {
+    if (has_residuals_) std::ranges::copy(at(part_f_, part++), at(residual_f_, 2 * k).begin());
+    std::ranges::copy(at(part_f_, part++), at(f_, 2 * k + 1).begin());
+    if (has_residuals_) std::ranges::copy(at(part_f_, part++), at(residual_f_, 2 * k + 1).begin());
+  }
+  evaluate_equations(z);
+}
+
+/// What is left of each equation.
+template <class Number>
+void TwoPointEquations<Number>::evaluate_equations(const std::vector<Number>& z) {
+  for (std::size_t k = 0; k < intervals(); ++k) {
+    const auto first = at(z, k), last = at(z, k + 1), left = at(equations_, k);
+    const auto f_first = f_at_node(k), middle = f_in_middle(k), f_last = f_at_node(k + 1);
+    for (std::size_t i = 0; i < n_; ++i)
+      left[i] = last[i] - first[i] - (f_first[i] + f_last[i] + middle[i] * 4) * (length(k) / 6);
+  }
+  functions_.conditions(at(z, 0), at(z, intervals()), std::span(z).subspan(nodes() * n_),
+                        std::span(equations_).subspan(intervals() * n_));
 }
 
 /// Of y_(i+1) - y_i - h/6 (f_i + 4 f_m + f_(i+1)) with y_m = (y_i + y_(i+1)) / 2 + h/8 (f_i - f_(i+1)).
@@ -123,14 +198,21 @@ void TwoPointEquations<Number>::fill_interval(std::size_t k) {
   }
 }
 
+/// False where a derivative is not finite.
 template <class Number>
-void TwoPointEquations<Number>::fill_matrix() {
+bool TwoPointEquations<Number>::fill_matrix() {
   functions_.jacobians(points_, y_, p(), f_, jacobians_);
-  functions_.condition_jacobians(y().first(n_), y().last(n_), p(), conditions(), condition_jacobians_);
+  const ConditionJacobians<Number>& of_conditions =
+      functions_.condition_jacobians(at(z_, 0), at(z_, intervals()), p(), conditions());
   for (std::size_t k = 0; k < intervals(); ++k) fill_interval(k);
-  std::ranges::copy(condition_jacobians_.first, matrix_.first_condition().begin());
-  std::ranges::copy(condition_jacobians_.last, matrix_.last_condition().begin());
-  std::ranges::copy(condition_jacobians_.by_p, matrix_.parameter_condition().begin());
+  std::ranges::copy(of_conditions.first, matrix_.first_condition().begin());
+  std::ranges::copy(of_conditions.last, matrix_.last_condition().begin());
+  std::ranges::copy(of_conditions.by_p, matrix_.parameter_condition().begin());
+  const auto finite = [](const std::vector<Number>& numbers) {
+    return std::ranges::all_of(numbers, [](const Number& number) { return boundary::is_finite(number); });
+  };
+  return finite(jacobians_.by_y) && finite(jacobians_.by_p) && finite(of_conditions.first) &&
+         finite(of_conditions.last) && finite(of_conditions.by_p);
 }
 
 /// The residual in the middle of an interval is 3/2 of what is left of its equation, over h.
@@ -139,7 +221,7 @@ bool TwoPointEquations<Number>::is_solved(double tolerance, double condition_tol
   for (std::size_t k = 0; k < intervals(); ++k) {
     const double most = 2.0 / 3 * length(k) * part_of_tolerance * tolerance;
     for (std::size_t i = 0; i < n_; ++i)
-      if (!(size_of(equations_[k * n_ + i]) < most * (1 + size_of(slope(2 * k + 1, i))))) return false;
+      if (!(size_of(equations_[k * n_ + i]) < most * (1 + size_of(f_in_middle(k)[i])))) return false;
   }
   return std::ranges::all_of(conditions(), [&](const Number& g) { return size_of(g) < condition_tolerance; });
 }
@@ -157,13 +239,7 @@ NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double conditi
       return squared_size_of<Number>(correction_);
     }
     if (jacobians++ == most_jacobians) return NewtonEnding::too_many;
-    fill_matrix();
-    const auto finite = [](const std::vector<Number>& numbers) {
-      return std::ranges::all_of(numbers, [](const Number& number) { return boundary::is_finite(number); });
-    };
-    if (!finite(jacobians_.by_y) || !finite(jacobians_.by_p) || !finite(condition_jacobians_.first) ||
-        !finite(condition_jacobians_.last) || !finite(condition_jacobians_.by_p))
-      return NewtonEnding::not_finite;
+    if (!fill_matrix()) return NewtonEnding::not_finite;
     if (!matrix_.factor()) return NewtonEnding::singular;
     correction_ = equations_;
     matrix_.solve(correction_);
@@ -189,42 +265,22 @@ NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double conditi
   return ending;
 }
 
-template <class Number>
-std::vector<Number> TwoPointEquations<Number>::f() const {
-  std::vector<Number> result;
-  for (std::size_t k = 0; k < nodes(); ++k)
-    for (std::size_t i = 0; i < n_; ++i) result.push_back(slope(2 * k, i));
-  return result;
-}
-
-template <class Number>
-std::array<Number, 4> TwoPointEquations<Number>::spline(std::size_t k, std::size_t i) const {
-  return cubic(length(k), z_[k * n_ + i], z_[(k + 1) * n_ + i], slope(2 * k, i), slope(2 * k + 2, i));
-}
-
 /// By Lobatto's quadrature with five points, at three of which the residual is known: zero at the ends.
 template <class Number>
 std::vector<double> TwoPointEquations<Number>::residuals() {
-  const double from_middle = 0.5 * std::sqrt(3.0 / 7);
-  std::vector<double> x;
-  std::vector<Number> y(2 * intervals() * n_), slopes(y.size()), f(y.size());
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    for (const double theta : {0.5 - from_middle, 0.5 + from_middle}) {
-      const std::size_t point = x.size() * n_;
-      x.push_back(x_[k] + theta * length(k));
-      for (std::size_t i = 0; i < n_; ++i)
-        std::tie(y[point + i], slopes[point + i]) = value_and_slope(spline(k, i), theta * length(k));
-    }
+  if (!has_residuals_) {
+    set_residual_points();
+    residual_f_.resize(residual_y_.size());
+    functions_.derivative(residual_x_, residual_y_, p(), residual_f_);
   }
-  functions_.derivative(x, y, p(), f);
   std::vector<double> result(intervals());
   for (std::size_t k = 0; k < intervals(); ++k) {
     double middle = 0, others = 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const double of_middle = 1.5 * size_of(equations_[k * n_ + i]) / (length(k) * (1 + size_of(slope(2 * k + 1, i))));
+      const double of_middle = 1.5 * size_of(equations_[k * n_ + i]) / (length(k) * (1 + size_of(f_in_middle(k)[i])));
       middle += of_middle * of_middle;
-      for (const std::size_t point : {2 * k, 2 * k + 1}) {
-        const double one = size_of(slopes[point * n_ + i] - f[point * n_ + i]) / (1 + size_of(f[point * n_ + i]));
+      for (const std::size_t e : {2 * k * n_ + i, (2 * k + 1) * n_ + i}) {
+        const double one = size_of(residual_yp_[e] - residual_f_[e]) / (1 + size_of(residual_f_[e]));
         others += one * one;
       }
     }
@@ -233,12 +289,56 @@ std::vector<double> TwoPointEquations<Number>::residuals() {
   return result;
 }
 
+/// e' = J e + r, where r is the residual: of each equation the integral of (1 + J (middle - x)) r over its interval is
+/// left. Its second part is of the order of the first, as r is nearly odd about the middle. The matrix tells what that
+/// makes of the solution, to first order.
+template <class Number>
+double TwoPointEquations<Number>::relative_error(double tolerance) {
+  const double from_middle = 0.5 * std::sqrt(3.0 / 7);
+  std::vector<Number>& error = simplified_;
+  std::ranges::fill(error, Number{});
+  std::vector<Number> first(n_), last(n_);
+  for (std::size_t k = 0; k < intervals(); ++k) {
+    const double h = length(k);
+    const Number* const jacobian = &jacobians_.by_y[(2 * k + 1) * n_ * n_];
+    for (std::size_t i = 0; i < n_; ++i) {
+      const std::size_t e = 2 * k * n_ + i;
+      first[i] = residual_yp_[e] - residual_f_[e];
+      last[i] = residual_yp_[e + n_] - residual_f_[e + n_];
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Number middle = equations_[k * n_ + i] * 1.5;  // times h
+      Number& left = error[k * n_ + i];
+      left = middle * (16.0 / 45) + (first[i] + last[i]) * (49.0 / 180 * h);
+      for (std::size_t j = 0; j < n_; ++j)
+        left += jacobian[i * n_ + j] * (first[j] - last[j]) * (49.0 / 180 * h * from_middle * h);
+    }
+  }
+  matrix_.solve(error);
+  double greatest = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    double of_error = 0, of_y = 0, of_f = 0;
+    for (std::size_t k = 0; k < nodes(); ++k) {
+      of_error = std::max(of_error, size_of(error[k * n_ + i]));
+      of_y = std::max(of_y, size_of(z_[k * n_ + i]));
+      of_f = std::max(of_f, size_of(f_at_node(k)[i]));
+    }
+    // y may be zero: then what the residual allowed makes over the interval is no error.
+    greatest = std::max(greatest, of_error / (of_y + tolerance * (1 + of_f) * (x_.back() - x_.front())));
+  }
+  return greatest;
+}
+
 template <class Number>
 bool TwoPointEquations<Number>::is_finite(TwoPointSolution<Number>& note) const {
-  for (std::size_t at = 0; at < f_.size(); ++at) {
-    if (boundary::is_finite(f_[at])) continue;
-    note.not_finite = TwoPointQuantity::derivative, note.component = at % n_, note.where = points_[at / n_];
-    return false;
+  for (const std::size_t first : {0, 1}) {  // the middles follow from the nodes
+    for (std::size_t q = first; q < points_.size(); q += 2) {
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (boundary::is_finite(at(f_, q)[i])) continue;
+        note.not_finite = TwoPointQuantity::derivative, note.component = i, note.where = points_[q];
+        return false;
+      }
+    }
   }
   for (std::size_t i = 0; i < n_ + k_; ++i) {
     if (boundary::is_finite(conditions()[i])) continue;

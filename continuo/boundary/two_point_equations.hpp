@@ -14,11 +14,20 @@
 
 namespace continuo::boundary {
 
+/// f at nodes and the middles between them, in order, as far as it is known.
+template <class Number>
+struct KnownSlopes {
+  std::vector<Number> f;
+  std::vector<bool> is_known;  // of each point; empty: nowhere
+};
+
+/// The equations on one mesh. What is said of the solution holds for the unknowns evaluated last.
 template <class Number>
 class TwoPointEquations {
  public:
-  /// On the mesh x, from the unknowns z.
-  TwoPointEquations(TwoPointFunctions<Number>& functions, std::span<const double> x, std::vector<Number> z);
+  /// On the mesh x, from the unknowns z, for which f may be known already.
+  TwoPointEquations(TwoPointFunctions<Number>& functions, std::span<const double> x, std::vector<Number> z,
+                    KnownSlopes<Number> known);
 
   /// Until residuals are well below the tolerances or no progress is made.
   NewtonEnding iterate(double tolerance, double condition_tolerance);
@@ -27,12 +36,19 @@ class TwoPointEquations {
   [[nodiscard]] std::span<const Number> y() const { return std::span(z_).first(nodes() * n_); }
   /// The parameters.
   [[nodiscard]] std::span<const Number> p() const { return std::span(z_).subspan(nodes() * n_); }
-  /// f at the nodes.
-  [[nodiscard]] std::vector<Number> f() const;
+  /// f at node k.
+  [[nodiscard]] std::span<const Number> f_at_node(std::size_t k) const { return at(f_, 2 * k); }
+  /// f in the middle of interval k.
+  [[nodiscard]] std::span<const Number> f_in_middle(std::size_t k) const { return at(f_, 2 * k + 1); }
   /// The spline's component i in interval k.
-  [[nodiscard]] std::array<Number, 4> spline(std::size_t k, std::size_t i) const;
+  [[nodiscard]] std::array<Number, 4> spline(std::size_t k, std::size_t i) const {
+    return cubic(length(k), at(y_, 2 * k)[i], at(y_, 2 * k + 2)[i], at(f_, 2 * k)[i], at(f_, 2 * k + 2)[i]);
+  }
   /// Of each interval: y' - f, relative to 1 + |f|, root mean square.
   [[nodiscard]] std::vector<double> residuals();
+  /// What these residuals, just found, make of the solution, estimated: the greatest error of a component, relative to
+  /// its size and what a residual of the tolerance may add. `iterate` must have factored a matrix.
+  [[nodiscard]] double relative_error(double tolerance);
   /// The residuals of the conditions.
   [[nodiscard]] std::span<const Number> conditions() const { return std::span(equations_).subspan(intervals() * n_); }
   /// Whether f and the conditions are finite; if not, `note` is told where.
@@ -42,24 +58,40 @@ class TwoPointEquations {
   [[nodiscard]] std::size_t nodes() const { return x_.size(); }
   [[nodiscard]] std::size_t intervals() const { return x_.size() - 1; }
   [[nodiscard]] double length(std::size_t k) const { return x_[k + 1] - x_[k]; }
-  /// f at the point 2k of node k, 2k + 1 of the middle after it.
-  [[nodiscard]] const Number& slope(std::size_t point, std::size_t i) const { return f_[point * n_ + i]; }
+  /// The numbers of a point.
+  [[nodiscard]] std::span<const Number> at(const std::vector<Number>& numbers, std::size_t point) const {
+    return std::span(numbers).subspan(point * n_, n_);
+  }
+  [[nodiscard]] std::span<Number> at(std::vector<Number>& numbers, std::size_t point) const {
+    return std::span(numbers).subspan(point * n_, n_);
+  }
+  void set_nodes(const std::vector<Number>& z);
+  void set_middles();
+  void set_residual_points();
+  void begin_points() { part_x_.clear(), part_y_.clear(); }
+  void add_point(double x, std::span<const Number> y);
+  void evaluate_points(std::span<const Number> p);
+  void evaluate_unknown(const std::vector<bool>& is_known);
   void evaluate(const std::vector<Number>& z);
-  void fill_matrix();
+  void evaluate_equations(const std::vector<Number>& z);
+  bool fill_matrix();
   void fill_interval(std::size_t k);
   [[nodiscard]] bool is_solved(double tolerance, double condition_tolerance) const;
 
   TwoPointFunctions<Number>& functions_;
   std::size_t n_, k_;
   std::span<const double> x_;
-  std::vector<double> points_, middles_;  // nodes and middles in order; middles alone
   std::vector<Number> z_, trial_;
-  std::vector<Number> y_, f_;  // at `points_`
+  std::vector<double> points_;                                 // nodes and middles in order
+  std::vector<Number> y_, f_;                                  // there
+  std::vector<double> residual_x_;                             // two points of each interval
+  std::vector<Number> residual_y_, residual_yp_, residual_f_;  // the spline, its slope and f there
+  bool has_residuals_ = false;                                 // f is known there
+  std::vector<double> part_x_;                                 // the points of a call of f
   std::vector<Number> part_y_, part_f_;
   std::vector<Number> equations_;  // what is left of each
   std::vector<Number> correction_, simplified_;
   PointJacobians<Number> jacobians_;
-  ConditionJacobians<Number> condition_jacobians_;
   AlmostBlockDiagonal<Number> matrix_;
 };
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <continuo/boundary/number_size.hpp>
 #include <continuo/boundary/two_point_functions.hpp>
@@ -79,46 +80,51 @@ void TwoPointFunctions<Number>::derivative_on_mesh(std::span<const double> x, Nu
   }
 }
 
-/// Each point n + 1 times: as it is, and with each component displaced. False where f at a point differs from what it
-/// was in another company: then its points depend on each other, and only calls as those for the equations will do.
+/// Each point once for each component, displaced; and before these as it is, where that costs little and at first:
+/// where f there differs from what it was in other company, its points depend on each other, and only calls as those
+/// for the equations will do. False then.
 template <class Number>
 bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f,
                                                   std::vector<Number>& by_y) {
   constexpr double rounding = 1e-10;
-  const std::size_t n = size(), copies = n + 1;
+  constexpr std::size_t few_points = 128;
+  const std::size_t n = size(), as_is = !points_were_compared_ || x.size() <= few_points ? 1 : 0, copies = n + as_is;
   const std::size_t chunk = std::max<std::size_t>(1, most_numbers_at_once / (n * copies));
   double greatest = 0;
   for (const Number& slope : f) greatest = std::max(greatest, size_of(slope));
+  std::vector<double> all_x;
+  std::vector<Number> all_y, all_f;
   for (std::size_t begin = 0; begin < x.size(); begin += chunk) {
     const std::size_t count = std::min(chunk, x.size() - begin);
-    std::vector<double> all_x(count * copies);
-    std::vector<Number> all_y(count * copies * n), all_f(count * copies * n);
-    for (std::size_t q = 0; q < count; ++q) {
-      std::fill_n(all_x.begin() + static_cast<std::ptrdiff_t>(q * copies), copies, x[begin + q]);
-      const auto point = y.subspan((begin + q) * n, n);
-      for (std::size_t c = 0; c < copies; ++c) {
-        Number* const copy = all_y.data() + (q * copies + c) * n;
-        std::ranges::copy(point, copy);
-        if (c > 0) copy[c - 1] = displaced(copy[c - 1]);
+    all_x.clear(), all_y.clear();
+    for (std::size_t q = begin; q < begin + count; ++q) {
+      all_x.insert(all_x.end(), copies, x[q]);
+      const std::size_t first = all_y.size();
+      for (std::size_t c = 0; c < copies; ++c) all_y.insert(all_y.end(), &y[q * n], &y[q * n] + n);
+      for (std::size_t j = 0; j < n; ++j) {
+        Number& moved = all_y[first + (as_is + j) * n + j];
+        moved = displaced(moved);
       }
     }
+    all_f.resize(all_y.size());
     derivative(all_x, all_y, p, all_f);
     for (std::size_t q = 0; q < count; ++q) {
-      const Number* const here = all_f.data() + q * copies * n;
-      for (std::size_t i = 0; i < n; ++i)
-        if (!(size_of(here[i] - f[(begin + q) * n + i]) <= rounding * greatest)) return false;
+      const Number* const before = &f[(begin + q) * n];
+      const Number* const copy = &all_f[q * copies * n];
+      for (std::size_t i = 0; i < as_is * n; ++i)
+        if (!(size_of(copy[i] - before[i]) <= rounding * greatest)) return false;
       for (std::size_t j = 0; j < n; ++j) {
-        const Number* const moved = here + (j + 1) * n;
-        const Number before = y[(begin + q) * n + j];
-        const Number inverse = reciprocal(all_y[(q * copies + j + 1) * n + j] - before);
+        const std::size_t moved = (q * copies + as_is + j) * n;
+        const Number inverse = reciprocal(all_y[moved + j] - y[(begin + q) * n + j]);
         for (std::size_t i = 0; i < n; ++i) {
-          const Number slope = (moved[i] - here[i]) * inverse;
+          const Number slope = (all_f[moved + i] - before[i]) * inverse;
           if (!is_finite(slope)) return false;
           by_y[((begin + q) * n + i) * n + j] = slope;
         }
       }
     }
   }
+  points_were_compared_ = true;
   return true;
 }
 
@@ -192,30 +198,73 @@ void TwoPointFunctions<Number>::jacobians(std::span<const double> x, Numbers y, 
   parameter_jacobians(x, y, p, f, result.by_p);
 }
 
+/// Whether the derivatives that are there foretell these residuals: then the conditions are linear as far as seen, as
+/// they mostly are, and need not be differenced again.
 template <class Number>
-void TwoPointFunctions<Number>::condition_jacobians(Numbers y_first, Numbers y_last, Numbers p, Numbers residuals,
-                                                    ConditionJacobians<Number>& result) const {
-  const std::size_t n = size(), k = parameters(), rows = n + k;
-  result.first.resize(rows * n), result.last.resize(rows * n), result.by_p.resize(rows * k);
-  if (problem_.condition_jacobian)
-    return problem_.condition_jacobian(y_first, y_last, p, result.first, result.last, result.by_p);
-  std::vector<Number> first(y_first.begin(), y_first.end()), last(y_last.begin(), y_last.end()),
-      of_p(p.begin(), p.end());
-  std::vector<Number> moved_residuals(rows);
-  const auto differences = [&](std::vector<Number>& arguments, std::vector<Number>& columns) {
-    for (std::size_t j = 0; j < arguments.size(); ++j) {
-      const Number before = arguments[j];
-      arguments[j] = displaced(before);
-      conditions(first, last, of_p, moved_residuals);
-      const Number inverse = reciprocal(arguments[j] - before);
-      arguments[j] = before;
-      for (std::size_t i = 0; i < rows; ++i)
-        columns[i * arguments.size() + j] = (moved_residuals[i] - residuals[i]) * inverse;
+bool TwoPointFunctions<Number>::foretold(Numbers arguments, Numbers residuals) const {
+  constexpr double enough = 1e-7;
+  const ConditionJacobians<Number>& known = condition_jacobians_;
+  if (known.arguments.empty()) return false;
+  const std::size_t n = size(), k = parameters();
+  for (std::size_t i = 0; i < n + k; ++i) {
+    Number sum = known.residuals[i];
+    double sizes = size_of(sum);
+    for (std::size_t j = 0; j < 2 * n + k; ++j) {
+      const Number slope = j < n       ? known.first[i * n + j]
+                           : j < 2 * n ? known.last[i * n + j - n]
+                                       : known.by_p[i * k + j - 2 * n];
+      const Number part = slope * (arguments[j] - known.arguments[j]);
+      sum += part;
+      sizes += size_of(part);
     }
-  };
-  differences(first, result.first);
-  differences(last, result.last);
-  differences(of_p, result.by_p);
+    if (!(size_of(sum - residuals[i]) <= enough * sizes)) return false;
+  }
+  return true;
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::condition_differences(Numbers arguments, Numbers residuals) {
+  const std::size_t n = size(), k = parameters();
+  std::vector<Number> moved(arguments.begin(), arguments.end()), moved_residuals(n + k);
+  const auto all = std::span<const Number>(moved);
+  for (std::size_t j = 0; j < moved.size(); ++j) {
+    const Number before = moved[j];
+    moved[j] = displaced(before);
+    conditions(all.first(n), all.subspan(n, n), all.subspan(2 * n), moved_residuals);
+    const Number inverse = reciprocal(moved[j] - before);
+    moved[j] = before;
+    for (std::size_t i = 0; i < n + k; ++i) {
+      const Number slope = (moved_residuals[i] - residuals[i]) * inverse;
+      if (j < n) {
+        condition_jacobians_.first[i * n + j] = slope;
+      } else if (j < 2 * n) {
+        condition_jacobians_.last[i * n + j - n] = slope;
+      } else {
+        condition_jacobians_.by_p[i * k + j - 2 * n] = slope;
+      }
+    }
+  }
+}
+
+template <class Number>
+const ConditionJacobians<Number>& TwoPointFunctions<Number>::condition_jacobians(Numbers y_first, Numbers y_last,
+                                                                                 Numbers p, Numbers residuals) {
+  const std::size_t n = size(), k = parameters(), rows = n + k;
+  ConditionJacobians<Number>& result = condition_jacobians_;
+  result.first.resize(rows * n), result.last.resize(rows * n), result.by_p.resize(rows * k);
+  if (problem_.condition_jacobian) {
+    problem_.condition_jacobian(y_first, y_last, p, result.first, result.last, result.by_p);
+    return result;
+  }
+  std::vector<Number> arguments(y_first.begin(), y_first.end());
+  arguments.insert(arguments.end(), y_last.begin(), y_last.end());
+  arguments.insert(arguments.end(), p.begin(), p.end());
+  if (!foretold(arguments, residuals)) {
+    condition_differences(arguments, residuals);
+    result.arguments = std::move(arguments);
+    result.residuals.assign(residuals.begin(), residuals.end());
+  }
+  return result;
 }
 
 template <class Number>

@@ -15,10 +15,12 @@ struct PointJacobians {
   std::vector<Number> by_y, by_p;
 };
 
-/// Derivatives of the conditions, row by row.
+/// Derivatives of the conditions, row by row, and where they were taken.
 template <class Number>
 struct ConditionJacobians {
   std::vector<Number> first, last, by_p;
+  std::vector<Number> arguments;  // y at both ends and p
+  std::vector<Number> residuals;  // there
 };
 
 /// y and f are given node by node, y_i of point q at q * n + i.
@@ -41,8 +43,8 @@ class TwoPointFunctions {
     problem_.conditions(y_first, y_last, p, residuals);
   }
   /// Their derivatives, where they are `residuals`.
-  void condition_jacobians(std::span<const Number> y_first, std::span<const Number> y_last, std::span<const Number> p,
-                           std::span<const Number> residuals, ConditionJacobians<Number>& result) const;
+  const ConditionJacobians<Number>& condition_jacobians(std::span<const Number> y_first, std::span<const Number> y_last,
+                                                        std::span<const Number> p, std::span<const Number> residuals);
   /// Makes y(a) one that the singular term allows.
   void restrict_first(std::span<Number> y_first) const;
 
@@ -52,11 +54,14 @@ class TwoPointFunctions {
   bool jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
   void jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
   void derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f);
+  [[nodiscard]] bool foretold(Numbers arguments, Numbers residuals) const;
+  void condition_differences(Numbers arguments, Numbers residuals);
   void parameter_jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_p);
 
   const TwoPointProblem<Number>& problem_;
   double start_;
-  bool points_are_independent_ = true;  // as far as has been seen
+  bool points_are_independent_ = true, points_were_compared_ = false;
+  ConditionJacobians<Number> condition_jacobians_;
   std::vector<Number> by_component_, slopes_by_component_;
 };
 

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Callable
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ _MESSAGES = {
     3: "The solver was unable to satisfy boundary conditions tolerance on iteration 10.",
     4: "{quantity} is infinite or not a number{where}.",
     5: "The mesh cannot be refined near x = {x:.17g}: its nodes would be equal.",
+    6: "The conditions do not determine a solution: its estimated error is as large as itself.",
 }
 
 _REPORTS = {
@@ -30,6 +32,7 @@ _REPORTS = {
     3: "The solver was unable to satisfy boundary conditions tolerance on iteration {iteration}. ",
     4: "A value that is infinite or not a number was encountered on iteration {iteration}. ",
     5: "The mesh cannot be refined further after iteration {iteration}. ",
+    6: "No solution is determined, after iteration {iteration}. ",
 }
 
 
@@ -129,16 +132,16 @@ def _checked_mesh(x: ArrayLike) -> NDArray[Any]:
         raise ValueError("`x` must be 1 dimensional.")
     if mesh.shape[0] < 2:
         raise ValueError("`x` must contain at least two nodes: the ends of the interval.")
-    if not np.all(np.isfinite(mesh)):
-        raise ValueError("`x` must be finite.")
-    if np.any(np.diff(mesh) <= 0):
+    if not (mesh[1:] > mesh[:-1]).all():
         raise ValueError("`x` must be strictly increasing.")
+    if not (isfinite(mesh[0]) and isfinite(mesh[-1])):
+        raise ValueError("`x` must be finite.")
     return mesh
 
 
 def _checked_guess(y: ArrayLike, columns: int) -> NDArray[Any]:
     given = np.asarray(y)
-    dtype = complex if np.issubdtype(given.dtype, np.complexfloating) else float
+    dtype = complex if given.dtype.kind == "c" else float
     guess: NDArray[Any] = np.array(given, dtype=dtype, order="C")
     if guess.ndim != 2:
         raise ValueError("`y` must be 2 dimensional.")
@@ -146,16 +149,18 @@ def _checked_guess(y: ArrayLike, columns: int) -> NDArray[Any]:
         raise ValueError(f"`y` is expected to have {columns} columns, but actually has {guess.shape[1]}.")
     if guess.shape[0] == 0:
         raise ValueError("`y` must have at least one row: a component of the solution.")
-    if not np.all(np.isfinite(guess)):
+    if not np.isfinite(guess).all():
         raise ValueError("`y`, where the iteration begins, must be finite.")
     return guess
 
 
 def _checked_parameters(p: ArrayLike | None, dtype: Any) -> NDArray[Any]:
-    parameters = np.array([] if p is None else p, dtype=dtype, order="C")
+    if p is None:
+        return np.empty(0, dtype)
+    parameters: NDArray[Any] = np.array(p, dtype=dtype, order="C")
     if parameters.ndim != 1:
         raise ValueError("`p` must be 1 dimensional.")
-    if not np.all(np.isfinite(parameters)):
+    if not np.isfinite(parameters).all():
         raise ValueError("`p`, where the iteration begins, must be finite.")
     return parameters
 
@@ -171,7 +176,16 @@ def _singular_matrices(S: ArrayLike | None, n: int, dtype: Any) -> tuple[NDArray
     if not np.all(np.isfinite(matrix)):
         raise ValueError("`S` must be finite.")
     identity = np.identity(n)
-    return matrix, identity - np.linalg.pinv(matrix) @ matrix, np.linalg.pinv(identity - matrix)
+    _, sizes, rows = np.linalg.svd(matrix)
+    kept = rows[sizes > _EPS * n * sizes[0]]
+    try:
+        slope = np.linalg.inv(identity - matrix)
+        regular = np.abs(slope).max() * np.abs(identity - matrix).max() * _EPS * n < 1e-8
+    except np.linalg.LinAlgError:
+        regular = False
+    if not regular:
+        slope = np.linalg.pinv(identity - matrix)
+    return matrix, (identity - kept.conj().T @ kept).astype(dtype, copy=False), slope
 
 
 def _checked_tolerance(name: str, value: float) -> float:
@@ -272,7 +286,8 @@ def solve_bvp(
             The number of meshes.
         status : int
             0: solved; 1: more than `max_nodes` needed; 2: a singular Jacobian; 3: `bc_tol` not reached;
-            4: `fun`, `bc` or a derivative is infinite or not a number; 5: nodes would be equal.
+            4: `fun`, `bc` or a derivative is infinite or not a number; 5: nodes would be equal; 6: the
+            residuals are small but may make all of the solution, as where there is none or there are many.
         message : str
             The same in words.
         success : bool

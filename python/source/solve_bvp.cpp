@@ -3,6 +3,7 @@
 #include <complex>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -38,10 +39,18 @@ const Number* numbers_of(const Array<Number>& array) {
   return reinterpret_cast<const Number*>(array.data());
 }
 
-/// A new array of these numbers.
+/// A new array of these numbers: what NumPy does itself, since functions are called with a million of them.
 template <class Number>
 Array<Number> array_of(const Shape& shape, const Number* numbers) {
-  return Array<Number>(shape, reinterpret_cast<const NumberOfPython<Number>*>(numbers));
+  static const py::handle dtype = py::dtype::of<NumberOfPython<Number>>().release();
+  auto& numpy = py::detail::npy_api::get();
+  PyObject* const array =
+      numpy.PyArray_NewFromDescr_(numpy.PyArray_Type_, dtype.inc_ref().ptr(), static_cast<int>(shape.size()),
+                                  shape.data(), nullptr, nullptr, 0, nullptr);
+  if (array == nullptr) throw py::error_already_set();
+  auto result = py::reinterpret_steal<Array<Number>>(array);
+  std::copy_n(numbers, result.size(), reinterpret_cast<Number*>(result.mutable_data()));
+  return result;
 }
 template <class Number>
 Array<Number> array_of(std::span<const Number> numbers) {
@@ -55,10 +64,16 @@ std::string text_of(const Shape& shape) {
   return text + ")";
 }
 
+/// None would become a NaN.
+bool holds_no_none(const py::array& objects) {
+  const py::list elements = objects.attr("ravel")().attr("tolist")();
+  return std::none_of(elements.begin(), elements.end(), [](py::handle element) { return element.is_none(); });
+}
+
 /// What a function of the user's has returned, as an array of numbers of this shape. The message is SciPy's.
 template <class Number>
 Array<Number> checked(const py::object& returned, const Shape& shape, const char* name) {
-  Array<Number> array;
+  auto array = py::reinterpret_steal<Array<Number>>(nullptr);
   if (py::isinstance<Array<Number>>(returned)) {
     array = py::reinterpret_borrow<Array<Number>>(returned);
   } else {
@@ -67,7 +82,8 @@ Array<Number> checked(const py::object& returned, const Shape& shape, const char
     if (kind == 'c' && std::is_same_v<Number, double>)
       throw py::type_error(std::string("`") + name +
                            "` returned complex numbers for a real `y`; pass `y` with a complex data type.");
-    if (any) array = Array<Number>::ensure(any);
+    if (any && (std::string_view("biufc").find(kind) != std::string_view::npos || (kind == 'O' && holds_no_none(any))))
+      array = Array<Number>::ensure(any);
     if (!array) {
       PyErr_Clear();
       throw py::type_error(std::string("`") + name + "` must return an array of numbers with shape " + text_of(shape) +
@@ -97,6 +113,37 @@ std::vector<py::object> parts_of(const py::object& returned, std::size_t count, 
   return parts;
 }
 
+/// The lock of the interpreter, which the solver gives up and takes for calls. Cheaper than that of pybind11, which
+/// looks up the thread each time.
+class Lock {
+ public:
+  /// While it exists the lock is given up.
+  class Released {
+   public:
+    explicit Released(Lock& lock) : lock_(lock) { lock_.thread_ = PyEval_SaveThread(); }
+    ~Released() { PyEval_RestoreThread(lock_.thread_); }
+    Released(const Released&) = delete;
+    Released& operator=(const Released&) = delete;
+
+   private:
+    Lock& lock_;
+  };
+  /// While it exists the lock is taken, within what has given it up.
+  class Taken {
+   public:
+    explicit Taken(Lock& lock) : lock_(lock) { PyEval_RestoreThread(lock_.thread_); }
+    ~Taken() { lock_.thread_ = PyEval_SaveThread(); }
+    Taken(const Taken&) = delete;
+    Taken& operator=(const Taken&) = delete;
+
+   private:
+    Lock& lock_;
+  };
+
+ private:
+  PyThreadState* thread_ = nullptr;
+};
+
 /// Ctrl-C is an exception also where a function of the user's executes no bytecode.
 void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -107,9 +154,10 @@ template <class Number>
 class FunctionsOfPython {
  public:
   using Numbers = std::span<const Number>;
-  FunctionsOfPython(py::object fun, py::object bc, py::object fun_jac, py::object bc_jac, std::size_t size,
+  FunctionsOfPython(Lock& lock, py::object fun, py::object bc, py::object fun_jac, py::object bc_jac, std::size_t size,
                     std::size_t parameters)
-      : fun_(std::move(fun)),
+      : lock_(lock),
+        fun_(std::move(fun)),
         bc_(std::move(bc)),
         fun_jac_(std::move(fun_jac)),
         bc_jac_(std::move(bc_jac)),
@@ -148,7 +196,7 @@ class FunctionsOfPython {
   }
 
   void derivative(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f) const {
-    const py::gil_scoped_acquire lock;
+    const Lock::Taken taken(lock_);
     const Shape shape{n_, static_cast<py::ssize_t>(x.size())};
     const bool is_mesh = x.size() < 2 || x[0] < x[1];
     try {
@@ -163,11 +211,11 @@ class FunctionsOfPython {
     }
   }
   void conditions(Numbers first, Numbers last, Numbers p, std::span<Number> g) const {
-    const py::gil_scoped_acquire lock;
+    const Lock::Taken taken(lock_);
     copy_checked<Number>(call_at_ends(bc_, first, last, p), Shape{n_ + k_}, "bc", g);
   }
   void jacobian(std::span<const double> x, Numbers y, Numbers p, std::span<Number> by_y, std::span<Number> by_p) const {
-    const py::gil_scoped_acquire lock;
+    const Lock::Taken taken(lock_);
     const auto count = static_cast<py::ssize_t>(x.size());
     const py::object returned = call_at_points(fun_jac_, x, y, p);
     const Shape shape{n_, n_, count};
@@ -178,13 +226,14 @@ class FunctionsOfPython {
   }
   void condition_jacobian(Numbers first, Numbers last, Numbers p, std::span<Number> by_first, std::span<Number> by_last,
                           std::span<Number> by_p) const {
-    const py::gil_scoped_acquire lock;
+    const Lock::Taken taken(lock_);
     const auto parts = parts_of(call_at_ends(bc_jac_, first, last, p), k_ == 0 ? 2 : 3, "bc_jac");
     copy_checked<Number>(parts[0], Shape{n_ + k_, n_}, "bc_jac", by_first);
     copy_checked<Number>(parts[1], Shape{n_ + k_, n_}, "bc_jac", by_last);
     if (k_ > 0) copy_checked<Number>(parts[2], Shape{n_ + k_, k_}, "bc_jac", by_p);
   }
 
+  Lock& lock_;
   py::object fun_, bc_, fun_jac_, bc_jac_;
   py::ssize_t n_, k_;
 };
@@ -248,23 +297,24 @@ py::dict solve(py::object fun, py::object bc, const Array<double>& x, const Arra
                std::size_t max_nodes, const py::object& progress) {
   const auto n = static_cast<std::size_t>(y.shape(0));
   TwoPointProblem<Number> problem{.size = n, .parameters = static_cast<std::size_t>(p.size())};
-  const FunctionsOfPython<Number> functions(std::move(fun), std::move(bc), std::move(fun_jac), std::move(bc_jac), n,
-                                            problem.parameters);
+  Lock lock;
+  const FunctionsOfPython<Number> functions(lock, std::move(fun), std::move(bc), std::move(fun_jac), std::move(bc_jac),
+                                            n, problem.parameters);
   functions.add_to(problem);
   problem.singular_term = vector_of<Number>(singular_term);
   problem.first_value = vector_of<Number>(first_value);
   problem.first_derivative = vector_of<Number>(first_derivative);
   TwoPointOptions options{.tolerance = tol, .condition_tolerance = bc_tol, .most_nodes = max_nodes};
   if (!progress.is_none())
-    options.progress = [&progress](const TwoPointProgress& now) {
-      const py::gil_scoped_acquire lock;
+    options.progress = [&progress, &lock](const TwoPointProgress& now) {
+      const Lock::Taken taken(lock);
       progress(now.iteration, now.residual, now.condition, now.nodes, now.added, now.exceeds);
     };
   std::vector<double> mesh = vector_of<double>(x);
   std::vector<Number> guess = transposed(numbers_of<Number>(y), n, mesh.size());
   std::vector<Number> parameters = vector_of<Number>(p);
   const auto solution = [&] {
-    const py::gil_scoped_release unlocked;
+    const Lock::Released released(lock);
     return solve_two_point<Number>(problem, std::move(mesh), std::move(guess), std::move(parameters), options);
   }();
   return result_of(solution, n);
