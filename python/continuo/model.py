@@ -113,8 +113,8 @@ class Model(Studies):
             if not isinstance(text, str):
                 raise TypeError(f"text is a str, not {type(text).__name__}")
             path, folder = None, Path.cwd()
-            source, source_name = text.encode("utf-8", "surrogateescape"), (name or "text").encode()
-        self._begin(source, name.encode() if name else source_name, native, path, folder)
+            source, source_name = text.encode("utf-8", "surrogatepass"), b"text"
+        self._begin(source, name.encode("utf-8", "replace") if name else source_name, native, path, folder)
 
     def _begin(self, source: bytes, name: bytes, native: str, path: Optional[Path], folder: Path) -> None:
         loaded, messages = _continuo.load_model(name, source, native)

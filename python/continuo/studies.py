@@ -142,8 +142,7 @@ class Studies:
             raise (RunError if answer.exit == 3 else ModelError)(text, answer.messages)
         if answer.exit == 3 or answer.exit == 1:
             raise RunError(text or f"`{verb}` did not come to its end", answer.messages, result)
-        if text:
-            warn(text)
+        warn(text)
         return result
 
     # ---- many runs --------------------------------------------------------------------------------------------------
@@ -632,6 +631,9 @@ class Studies:
             A check does not hold.
         """
         answer = self._answer(["verify", "-"], progress)
+        failed = [one for model in answer.json.get("models", []) for one in model["checks"] if not one["passed"]]
+        if not answer.text:
+            answer.text = "\n".join(f"{one['check']} does not hold{_found(one)}" for one in failed)
         return self._result("verify", answer)
 
     def report(
@@ -655,6 +657,10 @@ class Studies:
         return self._result("report", self._answer(arguments + [f"--with={one}" for one in studies], progress))
 
 
+def _found(check: Mapping[str, Any]) -> str:
+    return f": it is {check['value']}" if "value" in check else f": {check['message']}"
+
+
 # ---- options as texts -----------------------------------------------------------------------------------------------
 
 
@@ -672,7 +678,8 @@ def _told_apart(
     """Options of the verb, without those that are None; and what is left: parameters."""
     names = {_dashed(name) for name in options}
     own = {name for name in names if f"--{name}" in declared or f"-{name}" in declared} - {"json", "set", "help"}
-    asked = {_dashed(name): value for name, value in options.items() if _dashed(name) in own and value is not None}
+    options = {name: value for name, value in options.items() if value is not None}
+    asked = {_dashed(name): value for name, value in options.items() if _dashed(name) in own}
     unknown = {name: value for name, value in options.items() if _dashed(name) not in own}
     return asked, unknown
 
