@@ -139,8 +139,9 @@ class Model(Studies):
     def __setstate__(self, state: dict[str, Any]) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)  # they were shown when it was read first
-            # A text in memory finds its tables in the folder that was the present one when it was read first.
-            name = state["name"] if state["path"] is None else os.fsencode(state["path"])
+            name = state["name"]
+            if Path.cwd() != state["folder"]:  # the tables that the text names are there
+                name = os.fsencode(state["folder"] / Path(os.fsdecode(name)).name)
             self._begin(state["source"], name, state["native"], state["path"], state["folder"])
         self._given.update(state["given"])
         self._initial.update(state["initial"])

@@ -406,7 +406,8 @@ class Run:
             for curve in panel.curves:
                 axis.plot(panel.against.values, curve.values, **{"label": curve.label, **style})
             axis.set_xlabel(panel.against.label)
-            axis.set_ylabel(panel.label if ax is None else "")
+            if ax is None or not axis.get_ylabel():
+                axis.set_ylabel(panel.label)
             if len(panel.curves) > 1 or ax is not None:
                 axis.legend()
             if events and panel.against.name == "t":
@@ -422,7 +423,8 @@ class Run:
         return self.summary()
 
     def _repr_html_(self) -> str:
-        rows = [[name, f"{value:.8g}", value.unit] for name, value in list(self.final.items())[: 1 + MOST_SHOWN]]
+        shown = self._part("columns")[: 1 + MOST_SHOWN]
+        rows = [[name, f"{self.table[-1, i]:.8g}", unit] for i, (name, unit) in enumerate(shown) if len(self)]
         parts = [f"<div><b>{html.escape(self.model_name)}</b>: {html.escape(str(self.outcome))}</div>"]
         failed = [check.message for check in self.checks if not check] if self.as_written else []
         parts += [f'<div style="color:#b00">{html.escape(message)}</div>' for message in failed]

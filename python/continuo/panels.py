@@ -67,6 +67,7 @@ def svg_of(panels: list[Panel], width: int = 480, height: int = 180) -> str:
 
 
 def _extent(arrays: list[Array]) -> tuple[float, float]:
+    """From the lowest to the highest number; of a constant, and of nothing, an extent around it."""
     finite = [array[np.isfinite(array)] for array in arrays]
     finite = [array for array in finite if array.size]
     if not finite:
@@ -74,8 +75,15 @@ def _extent(arrays: list[Array]) -> tuple[float, float]:
     low, high = min(float(a.min()) for a in finite), max(float(a.max()) for a in finite)
     if not math.isfinite(high - low):  # beyond the largest number
         return low / 2, high / 2
-    air = (high - low) * 0.05 or abs(high) * 0.1 or 1.0
-    return low - air, high + air
+    if high > low:
+        return low, high
+    around = abs(high) * 0.1 or 1.0
+    return low - around, high + around
+
+
+def _tick(value: float, extent: float) -> str:
+    """Three digits; what is nothing beside the extent is 0."""
+    return "0" if abs(value) < 1e-9 * extent else f"{value:.3g}"
 
 
 def _thinned(x: Array, y: Array, most: int) -> tuple[Array, Array]:
@@ -91,10 +99,11 @@ def _thinned(x: Array, y: Array, most: int) -> tuple[Array, Array]:
 
 def _panel(panel: Panel, width: int, height: int, top: int) -> str:
     curves = panel.curves[:MOST_CURVES]
-    left, right, above, below = 64, 10, 18, 34
+    left, right, above, below, air = 64, 10, 18, 34, 6
     x_low, x_high = _extent([panel.against.values])
     y_low, y_high = _extent([curve.values for curve in curves])
-    x_scale, y_scale = (width - left - right) / (x_high - x_low), (height - above - below) / (y_high - y_low)
+    x_scale = (width - left - right) / (x_high - x_low)
+    y_scale = (height - above - below - 2 * air) / (y_high - y_low)
     bottom = top + height - below
     parts = [
         f'<rect x="{left}" y="{top + above}" width="{width - left - right}" height="{height - above - below}" '
@@ -102,7 +111,7 @@ def _panel(panel: Panel, width: int, height: int, top: int) -> str:
     ]
     for i, curve in enumerate(curves):
         x, y = _thinned(panel.against.values, curve.values, width)
-        points = np.column_stack([left + (x - x_low) * x_scale, bottom - (y - y_low) * y_scale])
+        points = np.column_stack([left + (x - x_low) * x_scale, bottom - air - (y - y_low) * y_scale])
         points = points[np.isfinite(points).all(axis=1)]
         text = " ".join(f"{px:.1f},{py:.1f}" for px, py in points)
         color = COLORS[i % len(COLORS)]
@@ -113,10 +122,10 @@ def _panel(panel: Panel, width: int, height: int, top: int) -> str:
     )
     texts = [
         (left, top + 13, "start", legend),
-        (left - 4, bottom, "end", f"{y_low:.3g}"),
-        (left - 4, top + above + 8, "end", f"{y_high:.3g}"),
-        (left, bottom + 13, "start", f"{x_low:.3g}"),
-        (width - right, bottom + 13, "end", f"{x_high:.3g}"),
+        (left - 4, bottom - air + 4, "end", _tick(y_low, y_high - y_low)),
+        (left - 4, top + above + air + 4, "end", _tick(y_high, y_high - y_low)),
+        (left, bottom + 13, "start", _tick(x_low, x_high - x_low)),
+        (width - right, bottom + 13, "end", _tick(x_high, x_high - x_low)),
         ((left + width - right) / 2, bottom + 24, "middle", html.escape(panel.against.label)),
     ]
     for x_at, y_at, anchor, inner in texts:

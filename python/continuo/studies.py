@@ -235,6 +235,8 @@ class Studies:
             )  # fmt: skip
             raise Interrupted("the sweep was interrupted; error.result.resume() makes the runs that are missing", rest)
         data = _dataset_of(table, answer)
+        if data is not None and data.attrs.get("title") == _STANDARD_INPUT:
+            data.attrs["title"] = os.fsdecode(self._source_name)
         if data is not None and answer.exit == 3 and not check:
             return data
         try:
