@@ -16,7 +16,7 @@ from .measurements import measurement_file
 from .optional import needed
 from .progress_bar import ProgressOption, in_notebook, watcher
 from .run_options import warn
-from .study_result import LinearModel, StudyResult
+from .study_result import FitResult, LinearModel, StudyResult
 from .values import did_you_mean
 
 if TYPE_CHECKING:
@@ -26,11 +26,12 @@ Names = Union[str, Sequence[str]]
 Bounds = Mapping[str, Union[str, tuple[Optional[float], Optional[float]]]]
 
 _STANDARD_INPUT = "standard input"  # how the command calls the model that it is handed over
+_KINDS: dict[str, type[StudyResult]] = {"fit": FitResult, "linearize": LinearModel}
 _LISTS = ("NAMES", "STATES", "RTOL,...", "H,...")  # options whose values are separated by commas
 
 
 class Studies:
-    """What can be studied of a model, by the command ``continuo`` (see ``continuo.command_path``).
+    """What can be studied of a model, by the command ``continuo`` (see ``continuo.command.command_path``).
 
     Every study takes the model as it stands: its text, and the parameters that were set. Keywords that are no options
     of the study are parameters: ``model.steady(k=3)``. All options of a verb can be given by their names on the
@@ -134,7 +135,7 @@ class Studies:
             for key in ("file", "message"):
                 if key in message:
                     message[key] = message[key].replace(_STANDARD_INPUT, source)
-        kind = LinearModel if verb == "linearize" else StudyResult
+        kind = _KINDS.get(verb, StudyResult)
         result = None if answer.failed else kind(verb, answer.json, svg)
         if answer.was_interrupted:
             raise Interrupted(f"`{verb}` was interrupted", result) from None
@@ -263,7 +264,7 @@ class Studies:
         set: Optional[Mapping[str, Any]] = None,
         progress: ProgressOption = None,
         **options: Any,
-    ) -> StudyResult:
+    ) -> FitResult:
         """Finds parameters and initial values from measurements.
 
         Parameters
@@ -296,9 +297,8 @@ class Studies:
 
         Returns
         -------
-        StudyResult
-            ``unknowns`` (name, value, deviation, interval, ...), ``correlations``, ``statistics``, ``columns`` with
-            residuals, ``converged``, ``doubts``. ``model.take(fit)`` sets the values found.
+        FitResult
+            ``values``, ``deviations``, ``correlations``, ``converged``, ``doubts``, ...
         """
         if not data:
             raise TypeError("fit takes measurements: model.fit(data, param=[\"k\"])")
@@ -306,12 +306,14 @@ class Studies:
         options.update(column=column, starts=starts, profile=profile, tol=tol)
         with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
             files = [measurement_file(one, Path(folder) / f"data{i + 1}.csv") for i, one in enumerate(data)]
-            return self.study("fit", *files, set=set, progress=progress, **options)
+            result = self.study("fit", *files, set=set, progress=progress, **options)
+        assert isinstance(result, FitResult)
+        return result
 
-    def take(self, fit: StudyResult) -> None:
+    def take(self, fit: FitResult) -> None:
         """Sets the parameters and initial values that a fit has found, for the runs to come."""
-        for unknown in fit.unknowns:
-            self._set(unknown["name"], unknown["value"])
+        for name, value in fit.values.items():
+            self._set(name, value)
 
     if TYPE_CHECKING:
 

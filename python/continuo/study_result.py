@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import html
+import math
 from typing import Any, Optional
 
 import numpy as np
 
 from .optional import needed
-from .values import table_html
+from .values import Value, table_html
 
 MOST_SHOWN = 20  # rows of a table, numbers of a list
 
@@ -143,6 +144,40 @@ class StudyResult:
         return _html_of(self._fields()) + (self.svg or "")
 
 
+class FitResult(StudyResult):
+    """Parameters and initial values from measurements.
+
+    Attributes
+    ----------
+    values : dict of str to Value
+        What was found, by the names of the unknowns, with units; ``model.take(fit)`` sets it.
+    deviations : dict of str to float
+        The standard deviation of each.
+    unknowns : Records
+        The same with the ``interval`` of 95 per cent and the ``status`` of each.
+    correlations : ndarray, shape (unknowns, unknowns)
+    converged : bool
+    doubts : list of str
+        Why the result may be wrong.
+    columns : Records
+        Of each column of measurements: ``t``, ``measured``, ``fitted``, ``residuals``, ...
+    """
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """What was found, by name."""
+        return {one["name"]: Value(_or_nan(one["value"]), one["unit"] or "") for one in self.json["unknowns"]}
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """The standard deviation of each; NaN where there is none."""
+        return {one["name"]: _or_nan(one["deviation"]) for one in self.json["unknowns"]}
+
+
+def _or_nan(value: Any) -> float:
+    return math.nan if value is None else float(value)
+
+
 class LinearModel(StudyResult):
     """``dx/dt = A dx + B du``, ``dy = C dx + D du`` about a point.
 
@@ -202,7 +237,10 @@ class LinearModel(StudyResult):
 # ---- how answers are shown ------------------------------------------------------------------------------------------
 
 
-def _short(value: Any) -> str:
+def _short(value: Any, key: str = "") -> str:
+    if key in _COMPLEX and isinstance(value, list):
+        numbers = np.ravel(converted(key, value))
+        return ", ".join(f"{number:.5g}" for number in numbers[:4]) + (", ..." if numbers.size > 4 else "")
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list):
@@ -216,13 +254,11 @@ def _short(value: Any) -> str:
 
 
 def _flat(record: dict[str, Any]) -> dict[str, Any]:
-    """Fields of fields as ``order.global``; two numbers of a complex one as one."""
+    """Fields of fields as ``order.global``."""
     flat: dict[str, Any] = {}
     for key, value in record.items():
         if isinstance(value, dict):
             flat.update({f"{key}.{inner}": one for inner, one in value.items()})
-        elif key == "eigenvalue" and isinstance(value, list) and None not in value:
-            flat[key] = complex(*value)
         else:
             flat[key] = value
     return flat
@@ -231,9 +267,7 @@ def _flat(record: dict[str, Any]) -> dict[str, Any]:
 def _table(records: Any) -> tuple[list[str], list[list[str]]]:
     flat = [_flat(one) for one in list.__iter__(records)][:MOST_SHOWN]
     keys = list(dict.fromkeys(key for one in flat for key in one))
-    return keys, [
-        [f"{v:.5g}" if isinstance(v := one.get(key), complex) else _short(v) for key in keys] for one in flat
-    ]
+    return keys, [[_short(one.get(key), key.split(".")[-1]) for key in keys] for one in flat]
 
 
 def _table_lines(records: Any) -> list[str]:
@@ -255,7 +289,7 @@ def _lines(fields: dict[str, Any]) -> list[str]:
         elif isinstance(value, dict):
             lines += [f"{key}:", *("  " + line for line in _lines(value))]
         else:
-            lines.append(f"{key}: {_short(value)}")
+            lines.append(f"{key}: {_short(value, key)}")
     return lines
 
 
@@ -266,7 +300,7 @@ def _records_html(records: Any) -> str:
 
 
 def _html_of(fields: dict[str, Any]) -> str:
-    plain = [[key, _short(v)] for key, v in fields.items() if not _is_table(v) and not isinstance(v, dict)]
+    plain = [[key, _short(v, key)] for key, v in fields.items() if not _is_table(v) and not isinstance(v, dict)]
     parts = [table_html(["", "value"], plain)] if plain else []
     for key, value in fields.items():
         if _is_table(value):

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+import types
 from pathlib import Path
 
 import numpy as np
@@ -50,8 +51,23 @@ def test_linearize_with_inputs_and_outputs() -> None:
     linear = Model(text=text).linearize()
     assert (linear.A, linear.B, linear.C, linear.D) == (-2, 3, 5, 7)
     assert linear.inputs == ["u"] and linear.outputs == ["y"]
-    control = pytest.importorskip("control")
-    assert isinstance(linear.to_control(), control.StateSpace)
+
+
+def test_linear_models_of_python_control(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list = []
+    control = types.ModuleType("control")
+    control.ss = lambda *matrices, **names: asked.append((matrices, names))  # type: ignore[attr-defined]  # a stand-in
+    monkeypatch.setitem(sys.modules, "control", control)
+    Model(text="input u = 0\nx' = -2*x + 3*u; x(0) = 0\noutput y = 5*x + 7*u\nrun 0..1").linearize().to_control()
+    (a, b, c, d), names = asked.pop()
+    assert (a, b, c, d) == (-2, 3, 5, 7) and names == {"states": ["x"], "inputs": ["u"], "outputs": ["y"]}
+    Model(text=DAMPED).linearize().to_control()
+    (a, b, c, d), names = asked.pop()
+    assert b.shape == (2, 1) and not b.any() and (c == np.eye(2)).all() and d.shape == (2, 1)
+    assert names["outputs"] == ["y_x", "y_x'"]
+    monkeypatch.setitem(sys.modules, "control", None)
+    with pytest.raises(ImportError, match="needs control"):
+        Model(text=DAMPED).linearize().to_control()
 
 
 def test_steady_and_its_stability() -> None:
@@ -126,7 +142,7 @@ def test_fit_of_random_parameters() -> None:
         # Within six of the deviations that it claims itself.
         np.testing.assert_array_less(np.abs(fit.unknowns.value - [k, c]), 6 * fit.unknowns.deviation)
     model.take(fit)
-    assert model.k == fit.unknowns[0].value
+    assert model.k == fit.values["k"] == fit.unknowns[0].value and fit.deviations["k"] == fit.unknowns[0].deviation
 
 
 def test_fit_takes_tables_of_all_kinds(tmp_path: Path) -> None:
