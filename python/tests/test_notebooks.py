@@ -3,7 +3,9 @@
 import json
 import os
 import shutil
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Iterator
 
 import pytest
 
@@ -16,11 +18,21 @@ NOTEBOOKS = sorted((Path(__file__).resolve().parents[1] / "notebooks").glob("*.i
 HAS_COMMAND = (os.environ.get("CONTINUO_COMMAND") or shutil.which("continuo")) is not None
 
 
+@pytest.fixture(scope="module")
+def executions() -> Iterator[dict[Path, "Future[object]"]]:
+    """All of them at the same time: a kernel takes seconds to begin."""
+
+    def execute(path: Path) -> object:
+        return nbclient.NotebookClient(nbformat.read(path, as_version=4), timeout=100, kernel_name="python3").execute()
+
+    with ThreadPoolExecutor(len(NOTEBOOKS)) as pool:
+        yield {path: pool.submit(execute, path) for path in NOTEBOOKS}
+
+
 @pytest.mark.skipif(not HAS_COMMAND, reason="the command continuo is not there")
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_it_runs(path: Path) -> None:
-    notebook = nbformat.read(path, as_version=4)
-    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
+def test_it_runs(executions: dict[Path, "Future[object]"], path: Path) -> None:
+    executions[path].result()
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
