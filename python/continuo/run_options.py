@@ -60,6 +60,8 @@ def number(name: str, value: Any) -> float:
     except (TypeError, ValueError):
         hint = "; several values are a sweep: model.sweep(...)" if hasattr(value, "__len__") else ""
         raise TypeError(f"{name} is one number, not {value!r}{hint}") from None
+    except OverflowError:
+        raise ValueError(f"{name} is too large for a number of 64 bits") from None
     if not math.isfinite(converted):
         raise ValueError(f"{name} is a finite number, not {converted}")
     return converted

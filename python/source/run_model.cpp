@@ -3,7 +3,9 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
+#include <unistd.h>
 
 #include "loaded_model.hpp"
 #include "messages.hpp"
@@ -83,9 +85,30 @@ class PartTeller {
   double from_ = 0, to_ = 1;
 };
 
+/// Raises MemoryError where the rows that are asked for take more memory than the computer has: the interpreter would
+/// be killed, with all that is in it.
+void check_memory(const model::Model& model, const model::Experiment& experiment) {
+  const model::RunSettings& run = model.run;
+  const auto value = [](const std::optional<model::Setting>& setting) { return setting ? setting->value : 0; };
+  const double interval = experiment.output ? *experiment.output : run.output ? value(run.output->interval) : 0;
+  if (!(interval > 0) || experiment.output_steps) return;
+  const double time = experiment.to.value_or(value(run.to)) - value(run.from);
+  const double columns = static_cast<double>(1 + model.states.size() + model.outputs.size() + model.energies.size());
+  const double bytes = time / interval * columns * sizeof(double);
+  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (bytes < there / 2) return;
+  const std::string text = fmt::format(
+      "{:.3g} rows of {} columns take {:.0f} GB: ask for fewer by output=, or write them to a file by the command "
+      "continuo run -o",
+      time / interval, columns, bytes / 1e9);
+  PyErr_SetString(PyExc_MemoryError, text.c_str());
+  throw py::error_already_set();
+}
+
 /// The run, or None; its messages; and what a signal or `tell` has raised, or None.
 py::tuple run(const LoadedModel& self, const py::dict& asked, const py::object& tell) {
   model::Experiment experiment = experiment_of(asked);
+  check_memory(self.model(), experiment);
   const PartTeller parts(self, experiment, tell);
   Watched watched;
   watched.place = parts.begin();

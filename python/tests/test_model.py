@@ -238,6 +238,12 @@ def test_a_setting_for_one_run_stays_there() -> None:
     assert model.k == 4 and model.states["x"] == 1
 
 
+def test_names_in_any_script() -> None:
+    model = Model(text="param ω = 2\nφ' = -ω*φ; φ(0) = 1\nrun 0..1 tol 1e-9")
+    model.ω = 3
+    assert model.run()["φ"][-1] == pytest.approx(math.exp(-3), rel=1e-7)
+
+
 def test_inputs_are_set_by_numbers() -> None:
     model = Model(text="input F = 2 [N]\nparam m = 1 [kg]\nv' = F/m; v(0) = 0 [m/s]\nrun 0..1 [s] tol 1e-10")
     assert model.inputs["F"].unit == "N" and model.F == 2
@@ -260,6 +266,8 @@ def test_inputs_are_set_by_numbers() -> None:
         ({"k": None}, TypeError, "one number"),
         ({"k": True}, TypeError, "one number"),
         ({"k": 1j}, TypeError, "one number"),
+        ({"k": 10**400}, ValueError, "too large"),
+        ({"until": 1e12, "output": 1e-6}, MemoryError, "ask for fewer"),
         ({"set": {"x(1)": 2}}, ModelError, "begins at t = 0"),
         ({"set": {3: 2}}, TypeError, "from names"),
         ({"until": -1}, ModelError, "cannot go"),
