@@ -116,7 +116,7 @@ template <class Function>
 
 }  // namespace
 
-std::optional<Native> native_of(py::handle f) {
+std::optional<Native> native_of(py::handle f, py::handle arguments) {
   if (PyFunction_Check(f.ptr()) || PyMethod_Check(f.ptr())) return {};
   if (py::isinstance<Native>(f)) {
     Native native = f.cast<Native>();
@@ -124,12 +124,15 @@ std::optional<Native> native_of(py::handle f) {
     return native;
   }
   if (py::hasattr(f, "__continuo_native__") && !PyType_Check(f.ptr())) {
-    const py::object given = f.attr("__continuo_native__")();
+    const bool has_arguments = !arguments.is_none() && py::len(arguments) > 0;
+    const py::object make = f.attr("__continuo_native__");
+    const py::object given = has_arguments ? make(arguments) : make();
     if (!py::isinstance<Native>(given))
       throw py::type_error("__continuo_native__ gave a " + std::string(Py_TYPE(given.ptr())->tp_name) +
                            ", and must give a continuo._continuo.Native");
     Native native = given.cast<Native>();
     native.owner = py::make_tuple(f, given);
+    native.has_arguments = has_arguments;
     return native;
   }
   if (PyTuple_Check(f.ptr()) && has_base(Py_TYPE(f.ptr()), "LowLevelCallable", "scipy"))

@@ -17,11 +17,13 @@ struct Native {
   void* user = nullptr;         // handed to both
   std::size_t size = 0;         // the number of components; 0: not known
   pybind11::object owner{};     // kept alive as long as the functions may be called
+  bool has_arguments = false;   // the further arguments are in `user`
 };
 
 /// What `f` is, where it is compiled: a Native, an object with __continuo_native__, a cfunc of numba, a
-/// scipy.LowLevelCallable, a ctypes function. None for all that is called as a Python function. Throws a TypeError for
-/// a compiled function of another signature.
-[[nodiscard]] std::optional<Native> native_of(pybind11::handle f);
+/// scipy.LowLevelCallable, a ctypes function. __continuo_native__ gets the tuple of further arguments, if there are
+/// any. None for all that is called as a Python function. Throws a TypeError for a compiled function of another
+/// signature.
+[[nodiscard]] std::optional<Native> native_of(pybind11::handle f, pybind11::handle arguments);
 
 }  // namespace continuo::python

@@ -93,7 +93,7 @@ Run::Run(const py::object& fun, const py::array& y0, RunSettings settings, const
   if (settings_.max_steps > 0) options.max_steps = settings_.max_steps;
   options.interrupt = &control_.stop();
   if (extras.size() > 0) read_extras(extras, options);
-  native_ = native_of(fun);
+  native_ = native_of(fun, settings_.arguments);
   set_functions(fun);
   end_without_run_ = settings_.t1;
   if (y0_.empty() || settings_.t0 == settings_.t1) {
@@ -136,7 +136,7 @@ void Run::set_functions(const py::object& fun) {
     if (native_->size != 0 && native_->size != needs)
       throw py::value_error("the compiled right-hand side is one of " + std::to_string(native_->size) +
                             " components, and y0 gives " + std::to_string(needs));
-    if (!settings_.arguments.is_none() && py::len(settings_.arguments) > 0)
+    if (!native_->has_arguments && !settings_.arguments.is_none() && py::len(settings_.arguments) > 0)
       throw py::type_error("`args` are not handed to a compiled right-hand side: give it user data instead");
     if (settings_.form.numbers == Numbers::complex)
       throw py::type_error("a compiled right-hand side computes with real numbers, and y0 is complex");

@@ -391,3 +391,26 @@ def test_threads_share_a_right_hand_side() -> None:
 
     with ThreadPoolExecutor(8) as pool:
         assert all(pool.map(work, range(16)))
+
+
+def test_solvers_take_them_with_arguments() -> None:
+    def spring(t: float, y: Any, k: float) -> list[Any]:
+        return [y[1], -k * y[0]]
+
+    traced = continuo.trace(spring, 2, args=(1.0,))
+    end = continuo.solve_ivp(traced, (0, 1), [1, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+    assert np.allclose(end, [math.cos(1), -math.sin(1)], atol=1e-8)
+    rising: Any = lambda t, y, k: y[0] - 0.5  # noqa: E731
+    result = continuo.solve_ivp(traced, (0, 1), [1, 0], "Radau", rtol=1e-8, atol=1e-10, args=(4.0,), events=rising)
+    assert np.allclose(result.y[:, -1], [math.cos(2), -2 * math.sin(2)], atol=1e-6)
+    assert abs(result.t_events[0][0] - math.pi / 6) < 1e-6
+    assert traced.parameters["k"] == 1
+    for f in ("x' = v; v' = -x", ["y[1]", "-y[0]"], continuo.expression("x'' = -x")):
+        end = continuo.solve_ivp(f, (0, 1), [1, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+        assert np.allclose(end, [math.cos(1), -math.sin(1)], atol=1e-8)
+    with pytest.raises(TypeError, match="2 arguments"):
+        continuo.solve_ivp(traced, (0, 1), [1, 0], args=(1.0, 2.0))
+    with pytest.raises(ValueError, match="3 components|one of 2"):
+        continuo.solve_ivp(traced, (0, 1), [1, 0, 0])
+    with pytest.raises(ValueError, match="E210"):
+        continuo.solve_ivp("x' = q", (0, 1), [1])
