@@ -9,6 +9,8 @@ from .expressions import TraceError, maximum, minimum, where
 from .ivp import solve_ivp
 from .magic import load_ipython_extension, unload_ipython_extension
 from .model import Model
+from .ode_interface import complex_ode, ode
+from .odeint_interface import ODEintWarning, odeint
 from .result import OdeResult
 from .right_hand_side import RightHandSide, expression
 from .solvers import BDF, DOP853, LSODA, OdeSolver, RK23, RK45, Radau
@@ -28,6 +30,7 @@ __all__ = [
     "Model",
     "ModelError",
     "ModelWarning",
+    "ODEintWarning",
     "OdeResult",
     "OdeSolution",
     "OdeSolver",
@@ -43,6 +46,9 @@ __all__ = [
     "load_ipython_extension",
     "maximum",
     "minimum",
+    "complex_ode",
+    "ode",
+    "odeint",
     "solve_bvp",
     "solve_ivp",
     "trace",

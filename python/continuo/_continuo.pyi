@@ -10,6 +10,14 @@ from numpy.typing import NDArray
 
 __version__: str
 
+class ContinuedRun:
+    """A run that is continued while its function stays what it was."""
+
+    def __init__(self, run: Run, t: float, direction: float) -> None: ...
+    def has_changed(self, y: Array) -> bool: ...
+    def advance_to(self, t: float, most_steps: int) -> int: ...
+    def stop_at(self, t: float) -> Array: ...
+
 class DenseSolution:
     """The dense output of a run, called with a time or an array of times."""
 
@@ -97,6 +105,8 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
+def through_times(run: Run, times: Array, most_steps: int) -> tuple[Array, dict[str, Array], int, int]: ...
+def evaluate_cubics(x: Array, c: Array, points: Array, nu: int, extrapolate: bool) -> Array: ...
 def solve_bvp(
     fun: Callable[..., ArrayLike],
     bc: Callable[..., ArrayLike],

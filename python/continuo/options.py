@@ -243,7 +243,7 @@ def _band_places(n: int, lband: int, uband: int) -> tuple[Array, Array]:
     return rows, np.repeat(np.arange(n), counts)
 
 
-def _unpacked(jac: Callable[..., Any], n: int, lband: int, uband: int) -> Callable[..., Array]:
+def whole_matrix(jac: Callable[..., Any], n: int, lband: int, uband: int) -> Callable[..., Array]:
     """Give the whole matrix of a Jacobian that LSODA takes packed: packed[i - j + uband, j] is entry (i, j)."""
     rows, columns = _band_places(n, lband, uband)
 
@@ -253,7 +253,7 @@ def _unpacked(jac: Callable[..., Any], n: int, lband: int, uband: int) -> Callab
             raise ValueError(
                 f"`jac` gave a packed matrix of shape {packed.shape}, and must give {(lband + uband + 1, n)}"
             )
-        matrix = np.zeros((n, n))
+        matrix = np.zeros((n, n), packed.dtype)
         matrix[rows, columns] = packed[rows - columns + uband, columns]
         return matrix
 
@@ -271,7 +271,7 @@ def _jacobian(options: dict[str, Any], t0: float, y: Array, args: Any, extras: d
         if lower < 0 or upper < 0:
             raise ValueError("`lband` and `uband` must not be negative.")
         if callable(jac):
-            jac = _unpacked(jac, n, lower, upper)
+            jac = whole_matrix(jac, n, lower, upper)
         if sparsity is None and n >= LEAST_SPARSE_SIZE:
             rows, columns = _band_places(n, lower, upper)
             extras["pattern"] = SparseJacobian(None, n, rows, columns).pattern

@@ -5,6 +5,7 @@ PYBIND11_MODULE(_continuo, module) {
   module.doc() = "What the package continuo calls in C++.";
   continuo::python::add_model(module);
   module.attr("__version__") = CONTINUO_VERSION;
+  add_continued_run(module);
   add_dense_solution(module);
   add_light_state(module);
   add_native(module);

@@ -2,6 +2,7 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+void add_continued_run(pybind11::module_& module);
 void add_dense_solution(pybind11::module_& module);
 void add_light_state(pybind11::module_& module);
 void add_native(pybind11::module_& module);

@@ -61,6 +61,8 @@ class Run {
   [[nodiscard]] const Outcome<double>& outcome() const;
   [[nodiscard]] Statistics statistics() const;
   [[nodiscard]] bool native() const { return native_.has_value(); }
+  /// f at (t, x), outside of the run; not numbers where it fails.
+  [[nodiscard]] std::vector<double> derivative_at(double t, const std::vector<double>& x);
   /// Continues from this state.
   void set_state(const pybind11::array& y);
   /// f has changed: the method begins anew.
