@@ -38,13 +38,9 @@ _OTHER = -4
 _TOLERANCE = 1.49012e-8
 
 
-def _is_compiled(func: Any) -> bool:
-    return not callable(func) or hasattr(func, "address") or hasattr(func, "__continuo_native__")
-
-
 def _right_hand_side(func: Any, args: tuple[Any, ...], tfirst: bool) -> Any:
     """func as a function of (t, y) alone."""
-    if _is_compiled(func) or (tfirst and not args):
+    if (tfirst and not args) or _continuo.is_native(func):
         return func
     if tfirst:
         return lambda t, y: func(t, y, *args)
