@@ -141,8 +141,11 @@ class Studies:
             raise Interrupted(f"`{verb}` was interrupted", result) from None
         if result is None:
             raise (RunError if answer.exit == 3 else ModelError)(text, answer.messages)
-        if answer.exit == 3 or answer.exit == 1:
-            raise RunError(text or f"`{verb}` did not come to its end", answer.messages, result)
+        text = text or "\n".join(_problems_in(answer.json))
+        # Of several methods one may not suit the model: what the others gave is a result.
+        if answer.exit == 3 or (answer.exit == 1 and not _has_good_parts(answer.json)):
+            text = text or f"`{verb}` did not come to its end"
+            raise (RunError if answer.exit == 3 else ModelError)(text, answer.messages, result)
         warn(text)
         return result
 
@@ -400,7 +403,7 @@ class Studies:
             ``methods``, of each ``real_axis_to``, ``imaginary_axis_to``, and ``largest`` with the ``step`` above
             which it is unstable for the ``eigenvalue``.
         """
-        return self.study("stability", _joined(methods, ",") or "", set=set, progress=progress, **options)
+        return self.study("stability", (_joined(methods, ",") or "").replace(" ", ""), set=set, progress=progress, **options)
 
     # ---- equations --------------------------------------------------------------------------------------------------
 
@@ -661,6 +664,18 @@ class Studies:
         return self._result("report", self._answer(arguments + [f"--with={one}" for one in studies], progress))
 
 
+def _problems_in(answer: Any) -> list[str]:
+    """What the parts of an answer say of themselves, each once."""
+    parts = answer.values() if isinstance(answer, dict) else answer if isinstance(answer, list) else []
+    own = [answer["problem"]] if isinstance(answer, dict) and answer.get("problem") else []
+    return list(dict.fromkeys(own + [problem for part in parts for problem in _problems_in(part)]))
+
+
+def _has_good_parts(answer: Mapping[str, Any]) -> bool:
+    lists = [value for key, value in answer.items() if isinstance(value, list) and key != "messages"]
+    return any(isinstance(part, dict) and "problem" not in part for parts in lists for part in parts)
+
+
 def _found(check: Mapping[str, Any]) -> str:
     return f": it is {check['value']}" if "value" in check else f": {check['message']}"
 
@@ -715,6 +730,8 @@ def _texts_of(name: str, option: Mapping[str, Any], value: Any) -> list[str]:
         return pairs
     if "FILE" in kind and not isinstance(value, (list, tuple)):
         return [os.path.abspath(os.fsdecode(value))]
+    if isinstance(value, str) and kind in _LISTS:
+        value = [one.strip() for one in value.split(",")]
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         return [_text_of(name, value)]
     texts = [text for one in value for text in (_texts_of(name, option, one) if isinstance(one, Mapping)

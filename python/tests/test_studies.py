@@ -239,6 +239,12 @@ def test_what_is_wrong_is_said() -> None:
         model.steady(along={"k": (1, 2), "c": (1, 2)})
     with pytest.raises(CommandError, match="frobnicate"):
         model.study("frobnicate")
+    with pytest.raises(ModelError, match="`rk4` cannot solve") as caught:
+        Model(MODELS / "pendulum_dae.sim").compare("rk4", step=0.1)
+    assert caught.value.result.contenders[0].method == "rk4"
+    with pytest.warns(ModelWarning, match="`rk4` does not estimate its error"):
+        found = Model(MODELS / "pendulum_dae.sim").compare("rk4, radau", tol=1e-6)
+    assert found.contenders[1].final_error < 1e-3
     gas = Model(MODELS / "newtons_cradle.sim")
     with pytest.raises(ModelError) as caught:
         gas.steady()
