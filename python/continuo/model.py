@@ -92,6 +92,7 @@ class Model(Studies):
     _sized: tuple[Any, ...]  # settings that decide sizes, and the model with these
     _parts: dict[str, Any]
     _views: weakref.WeakSet[View]
+    _process: int
 
     def __init__(
         self,
@@ -124,9 +125,14 @@ class Model(Studies):
         warn(message_text)
         for attribute, value in {
             "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path, "_folder": folder,
-            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {}, "_views": weakref.WeakSet(),
+            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {}, "_views": weakref.WeakSet(), "_process": os.getpid(),
         }.items():  # fmt: skip
             object.__setattr__(self, attribute, value)
+
+    def _renew_after_fork(self) -> None:
+        """In a forked process the thread that compiles is missing, and may have held a lock: the text is read again."""
+        if self._process != os.getpid():
+            self.__setstate__(self.__getstate__())
 
     # ---- copies -----------------------------------------------------------------------------------------------------
 
@@ -345,6 +351,7 @@ class Model(Studies):
         self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]] = None, options: Iterable[str] = ()
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Parameters with inputs, and initial values: those that are set, then these."""
+        self._renew_after_fork()
         given, initial = dict(self._given), dict(self._initial)
         structural = self._structural_names()
         both = [*values.items(), *(more or {}).items()]

@@ -1,8 +1,10 @@
 // Models in the language: loading, and what is in them.
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <pybind11/stl.h>
+#include <unistd.h>
 
 #include "loaded_model.hpp"
 #include "messages.hpp"
@@ -18,6 +20,16 @@ namespace {
 namespace py = pybind11;
 using Class = py::class_<LoadedModel, std::shared_ptr<LoadedModel>>;
 
+/// A forked process has the memory of the thread that compiles, and not the thread: it would wait for it for ever. So
+/// it leaves alone what it has from its parent, and loads its models anew (model.py).
+std::shared_ptr<const model::ModelProgram> left_alone_in_forks(std::shared_ptr<const model::ModelProgram> program) {
+  const model::ModelProgram* const place = program.get();
+  auto owner = std::make_unique<std::shared_ptr<const model::ModelProgram>>(std::move(program));
+  return {place, [kept = owner.release(), process = getpid()](const model::ModelProgram*) {
+            if (getpid() == process) delete kept;
+          }};
+}
+
 /// The model, or None; then its messages.
 py::tuple ready(model::Loaded loaded, model::NativeUse native) {
   py::object messages = messages_of(loaded.diagnostics, loaded.source);
@@ -27,7 +39,7 @@ py::tuple ready(model::Loaded loaded, model::NativeUse native) {
     const py::gil_scoped_release unlocked;
     if (native != model::NativeUse::never)
       loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = native});
-    program = model::compile(*std::move(loaded.model));
+    program = left_alone_in_forks(model::compile(*std::move(loaded.model)));
   }
   return py::make_tuple(std::make_shared<LoadedModel>(LoadedModel{
                             .source = std::move(loaded.source), .program = std::move(program), .native = native}),

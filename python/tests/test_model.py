@@ -46,6 +46,12 @@ run 0..3 [s] output 0.5 method dop853 tol 1e-10
 """
 OSCILLATOR = "x'' = -x; x(0) = 1; x'(0) = 0\nrun 0..1e9 output 1e4 method rk4 step 0.01\n"
 
+LORENZ = """param s = 10, salt = SALT
+x' = s*(y - x); y' = x*(28 - z) - y; z' = x*y - 8/3*z + 0*salt
+x(0) = 1; y(0) = 1; z(0) = 1
+run 0..1000 output 100 tol 1e-12
+"""
+
 
 def rows_of_command(*arguments: str) -> np.ndarray:
     done = subprocess.run([str(COMMAND), "run", *arguments, "-o", "-"], capture_output=True, text=True, check=False)
@@ -490,6 +496,27 @@ def test_threads_share_a_model() -> None:
         thread.join()
     for i in range(4):
         np.testing.assert_array_equal(found[i], alone[i])
+
+
+def test_forked_processes() -> None:
+    # The forked process has no thread that compiles, which its parent's models have.
+    script = f"""
+        import os, sys, time
+        from continuo import Model
+        model = Model(text={LORENZ!r}.replace("SALT", str(time.time())))
+        model.s = 11
+        run, wanted = model.run(), model.run(3).table
+        print(run.manifest["native"]["compiled"] >= 0, flush=True)
+        if os.fork() == 0:
+            same = (model.run(3).table == wanted).all()
+            del run
+            sys.exit(0 if same else 1)
+        print(os.waitstatus_to_exitcode(os.wait()[1]))
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stdout.split() == ["True", "0"], done.stderr
 
 
 def present_memory() -> int:
