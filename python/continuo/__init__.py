@@ -15,6 +15,7 @@ from .result import OdeResult
 from .right_hand_side import RightHandSide, expression
 from .solvers import BDF, DOP853, LSODA, OdeSolver, RK23, RK45, Radau
 from .tracing import Traced, trace
+from .world import World
 
 __all__ = [
     "BDF",
@@ -41,6 +42,7 @@ __all__ = [
     "RunError",
     "TraceError",
     "Traced",
+    "World",
     "__version__",
     "expression",
     "load_ipython_extension",

@@ -12,4 +12,5 @@ PYBIND11_MODULE(_continuo, module) {
   add_run(module);
   add_solve_bvp(module);
   add_right_hand_side(module);
+  add_world(module);
 }

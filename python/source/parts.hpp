@@ -14,3 +14,4 @@ void add_model(pybind11::module_& module);
 
 }  // namespace continuo::python
 void add_right_hand_side(pybind11::module_& module);
+void add_world(pybind11::module_& module);

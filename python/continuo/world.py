@@ -1,0 +1,592 @@
+"""Rigid spheres that collide: added by arrays, moved exactly or in steps, seen through NumPy views."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _continuo
+
+__all__ = ["Contacts", "RayHit", "World"]
+
+Floats = NDArray[np.float64]
+_Inner = Union[_continuo.World2, _continuo.World3]
+_CHANGES = np.array(["impact", "begin", "end"])
+
+
+class RayHit(NamedTuple):
+    """Where a ray meets a body or a wall."""
+
+    body: int | None
+    wall: int | None
+    distance: float
+    point: Floats
+    normal: Floats
+
+
+class Contacts(NamedTuple):
+    """The contacts of the last move, as arrays with an entry for each."""
+
+    time: Floats
+    change: NDArray[np.str_]  # 'impact'; of contacts that last 'begin' and 'end'
+    a: NDArray[np.int64]  # a body
+    b: NDArray[np.int64]  # the other one; -1 where it is a wall
+    wall: NDArray[np.int64]  # -1 where it is a body
+    point: Floats
+    normal: Floats  # from a to b, or into the wall
+    impulse: Floats  # along the normal
+    lost: int  # how many there were beside, which were not recorded
+
+
+class World:
+    """Bodies, walls and forces, and the motion that moves them.
+
+    The units are yours, as long as they belong together. `positions`, `velocities`, `spins` and `orientations` are views
+    without copies: what is written there is true from the next move on. When bodies are added or removed, views that
+    were taken before keep their numbers, and can no longer be written; the attribute gives the new one.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs in the plane, or balls in space.
+    gravity : array_like, shape (dimension,), or float, optional
+        The acceleration of every body; a number is its size, downwards. Without it there is none.
+    motion : {'exact', 'fast'}
+        Exactly from collision to collision, or in steps with soft contacts, for heaps and games.
+    step : float
+        The time of a step of the fast motion.
+    substeps : int
+        Of the fast motion: more make contacts stiffer, at proportional cost.
+    threads : int
+        Of the fast motion: at most so many; the results are the same for any number.
+    sleep_after : float
+        Of the fast motion: bodies at rest for so long are not moved until they are hit. 0: never.
+    tolerance : float
+        Of the exact motion under other forces than gravity: relative, and in units of a radius.
+    contact_time : float, optional
+        Of the exact motion: a body that would rebound for less rests.
+    contact_events : int
+        At most so many contacts of a move are recorded.
+
+    Examples
+    --------
+    >>> world = continuo.World(3, gravity=9.81)
+    >>> world.add_wall([0, 0, 1])
+    0
+    >>> ball = world.add([0, 0, 10], restitution=1)
+    >>> world.advance_to(2 * np.sqrt(2 * 9.5 / 9.81))
+    >>> round(float(world.positions[0, 2]), 9)
+    10.0
+    """
+
+    def __init__(
+        self,
+        dimension: Literal[2, 3] = 3,
+        gravity: ArrayLike | None = None,
+        motion: Literal["exact", "fast"] = "exact",
+        *,
+        step: float = 1 / 60,
+        substeps: int = 4,
+        threads: int = 1,
+        sleep_after: float = 0.0,
+        tolerance: float = 1e-10,
+        contact_time: float | None = None,
+        contact_events: int = 100_000,
+    ) -> None:
+        if dimension not in (2, 3):
+            raise ValueError(f"dimension is {dimension!r}; bodies move in 2 or 3 dimensions")
+        self._dimension = dimension
+        self._settings: dict[str, Any] = {
+            "motion": motion,
+            "step": step,
+            "substeps": substeps,
+            "threads": threads,
+            "sleep_after": sleep_after,
+            "tolerance": tolerance,
+            "contact_time": contact_time,
+            "contact_events": contact_events,
+        }
+        make = _continuo.World2 if dimension == 2 else _continuo.World3
+        self._inner: _Inner = make(_motion_settings(self._settings))
+        self._views: list[weakref.ref[Any]] = []
+        if gravity is not None:
+            self.gravity = np.asarray(gravity, dtype=np.float64)
+
+    # ---- bodies ----
+
+    def add(
+        self,
+        position: ArrayLike,
+        radius: ArrayLike = 0.5,
+        *,
+        velocity: ArrayLike = 0.0,
+        spin: ArrayLike = 0.0,
+        mass: ArrayLike | None = None,
+        density: ArrayLike = 1.0,
+        restitution: ArrayLike = 0.0,
+        friction: ArrayLike = 0.5,
+        rolling_resistance: ArrayLike = 0.0,
+        fixed: ArrayLike = False,
+        group: ArrayLike = 0,
+    ) -> Any:
+        """Adds a body, or many by arrays.
+
+        Parameters
+        ----------
+        position : array_like, shape (d,) or (N, d)
+            Of the centre, or of N of them. Of the others each is one value for all, or one for each body.
+        radius, mass, density : float or array_like, shape (N,)
+            Without `mass` it is density times volume (area in the plane).
+        velocity : array_like, shape (d,) or (N, d)
+        spin : float, or array_like, shape (3,) or (N, 3) in space, (N,) in the plane
+            The angular velocity in radians per time.
+        restitution : float or array_like, shape (N,)
+            0 (no bounce) to 1 (no loss).
+        friction, rolling_resistance : float or array_like, shape (N,)
+        fixed : bool or array_like, shape (N,)
+            Bodies that never move.
+        group : int or array_like, shape (N,)
+            Below 32; see :meth:`ignore`.
+
+        Returns
+        -------
+        int, or ndarray of int64, shape (N,)
+            What names the body, whatever is added or removed; :meth:`index` gives its row.
+
+        Raises
+        ------
+        ValueError
+            For a radius or a mass that is not positive, a number that is not finite, a wrong shape. Nothing is added
+            then.
+        """
+        d = self._dimension
+        centres = _numbers("position", position)
+        if centres.ndim not in (1, 2) or centres.shape[-1] != d:
+            raise ValueError(f"position has the shape {centres.shape}; it must be ({d},) or (N, {d})")
+        one = centres.ndim == 1
+        n = 1 if one else len(centres)
+        spins = 1 if d == 2 else 3
+
+        def column(name: str, value: ArrayLike, width: int = 1) -> Floats:
+            values = _numbers(name, value)
+            if width > 1:
+                allowed: tuple[tuple[int, ...], ...] = ((), (width,), (n, width))
+            else:
+                allowed = ((), (n,), (n, 1))
+            if values.shape not in allowed:
+                shapes = " or ".join(map(str, allowed))
+                raise ValueError(f"{name} has the shape {values.shape}; it must be {shapes} for {n} bodies")
+            if width == 1 and values.ndim == 1:
+                values = values[:, None]
+            return np.broadcast_to(values, (n, width))
+
+        rows = np.hstack(
+            [
+                centres.reshape(n, d),
+                column("velocity", velocity, d),
+                column("spin", spin, spins),
+                column("radius", radius),
+                column("mass", 1.0 if mass is None else mass),
+                column("density", density),
+                column("restitution", restitution),
+                column("friction", friction),
+                column("rolling_resistance", rolling_resistance),
+            ]
+        )
+        groups = column("group", group)[:, 0]
+        if np.any(groups < 0) or np.any(groups >= 32) or np.any(groups != np.floor(groups)):
+            raise ValueError("groups are whole numbers from 0 to 31")
+        is_fixed = column("fixed", np.asarray(fixed, dtype=np.float64))[:, 0] != 0
+        self._retire()
+        handles = self._inner.add(
+            rows, [mass is not None] * n, is_fixed.tolist(), [int(g) for g in groups]
+        )
+        return handles[0] if one else np.array(handles, dtype=np.int64)
+
+    def remove(self, body: int) -> None:
+        """Removes a body and the springs at it. The last body takes its row. KeyError where there is no such body."""
+        self._retire()
+        self._inner.remove(_handle(body))
+
+    def __contains__(self, body: object) -> bool:
+        return isinstance(body, (int, np.integer)) and int(body) >= 0 and self._inner.contains(int(body))
+
+    def __len__(self) -> int:
+        return len(self._inner)
+
+    def index(self, body: int) -> int:
+        """The row of a body in the arrays. KeyError where there is no such body."""
+        return self._inner.index(_handle(body))
+
+    @property
+    def bodies(self) -> NDArray[np.int64]:
+        """What names the bodies, in the order of the rows."""
+        return np.array(self._inner.handles(), dtype=np.int64)
+
+    def _retire(self) -> None:
+        """Views of before keep their numbers, and are not written any more."""
+        for reference in self._views:
+            view = reference()
+            if view is not None:
+                view.flags.writeable = False
+        self._views.clear()
+
+    def _view(self, array: Floats) -> Floats:
+        self._views = [reference for reference in self._views if reference() is not None]
+        self._views.append(weakref.ref(array))
+        return array
+
+    @property
+    def positions(self) -> Floats:
+        """The centres: a view that can be written, shape (N, d)."""
+        return self._view(self._inner.positions())
+
+    @positions.setter
+    def positions(self, values: ArrayLike) -> None:
+        self.positions[...] = values
+
+    @property
+    def velocities(self) -> Floats:
+        """The velocities of the centres: a view that can be written, shape (N, d)."""
+        return self._view(self._inner.velocities())
+
+    @velocities.setter
+    def velocities(self, values: ArrayLike) -> None:
+        self.velocities[...] = values
+
+    @property
+    def spins(self) -> Floats:
+        """The angular velocities in radians per time: a view that can be written, shape (N, 3), in the plane (N,)."""
+        return self._view(self._inner.spins())
+
+    @spins.setter
+    def spins(self, values: ArrayLike) -> None:
+        self.spins[...] = values
+
+    @property
+    def orientations(self) -> Floats:
+        """Unit quaternions (w, x, y, z), shape (N, 4), in the plane angles, shape (N,): a view that can be written."""
+        return self._view(self._inner.orientations())
+
+    @orientations.setter
+    def orientations(self, values: ArrayLike) -> None:
+        self.orientations[...] = values
+
+    @property
+    def radii(self) -> Floats:
+        """The radii, shape (N,): read only."""
+        return self._inner.radii()
+
+    @property
+    def masses(self) -> Floats:
+        """The masses, shape (N,): read only."""
+        return self._inner.masses()
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Which bodies never move, shape (N,)."""
+        return np.array(self._inner.fixed(), dtype=np.bool_)
+
+    # ---- walls and forces ----
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self._dimension
+
+    @property
+    def gravity(self) -> Floats:
+        """The acceleration of every body, shape (d,)."""
+        return self._inner.gravity()
+
+    @gravity.setter
+    def gravity(self, value: ArrayLike) -> None:
+        numbers = _numbers("gravity", value)
+        if numbers.ndim == 0:
+            down = np.zeros(self._dimension)
+            down[-1] = -numbers
+            numbers = down
+        self._inner.set_gravity(numbers)
+
+    def add_wall(
+        self,
+        normal: ArrayLike,
+        offset: float = 0.0,
+        *,
+        thin: bool = False,
+        restitution: float = 0.0,
+        friction: float = 0.5,
+        rolling_resistance: float = 0.0,
+    ) -> int:
+        """Adds a wall: the points x with normal . x >= offset are free, of a `thin` one those on both sides.
+
+        Returns
+        -------
+        int
+            Its number.
+        """
+        return self._inner.add_wall(
+            _numbers("normal", normal), float(offset), bool(thin), [restitution, friction, rolling_resistance]
+        )
+
+    def add_container(
+        self,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        *,
+        restitution: float = 0.0,
+        friction: float = 0.5,
+        rolling_resistance: float = 0.0,
+    ) -> None:
+        """Adds the walls of a box, of which the bodies are inside."""
+        material = [restitution, friction, rolling_resistance]
+        self._inner.add_container(_numbers("lower", lower), _numbers("upper", upper), material)
+
+    @property
+    def walls(self) -> list[tuple[Floats, float, bool]]:
+        """Of each wall the normal, the offset, and whether it is thin."""
+        return self._inner.walls()
+
+    def add_spring(
+        self,
+        a: int,
+        b: int | Sequence[float] | Floats,
+        *,
+        rest_length: float = 0.0,
+        stiffness: float = 1.0,
+        damping: float = 0.0,
+    ) -> None:
+        """A spring from body `a` to body `b`, or to a point: stiffness*(distance - rest_length) + damping*its rate."""
+        if isinstance(b, (int, np.integer)):
+            self._inner.add_spring(_handle(a), _handle(b), None, rest_length, stiffness, damping)
+        else:
+            self._inner.add_spring(_handle(a), None, _numbers("b", b), rest_length, stiffness, damping)
+
+    def set_drag(self, linear: float = 0.0, quadratic: float = 0.0) -> None:
+        """A force on every body against its velocity: linear*v + quadratic*|v|*v."""
+        self._inner.set_drag(_not_negative("linear", linear), _not_negative("quadratic", quadratic))
+
+    def set_attraction(self, constant: float, softening: float = 0.0, opening: float = 0.0) -> None:
+        """Every two bodies attract each other: constant*m1*m2*r/(r^2 + softening^2)^(3/2).
+
+        `opening` 0 sums up all pairs; 0.5 is usual for many bodies.
+        """
+        if not np.isfinite(constant):
+            raise ValueError(f"constant is {constant}; it must be finite")
+        self._inner.set_attraction(
+            constant, _not_negative("softening", softening), _not_negative("opening", opening)
+        )
+
+    def ignore(self, a: int, b: int) -> None:
+        """Bodies of the groups `a` and `b` do not collide from now on."""
+        if not (0 <= a < 32 and 0 <= b < 32):
+            raise ValueError("groups are whole numbers from 0 to 31")
+        self._inner.ignore(a, b)
+
+    # ---- moves ----
+
+    @property
+    def time(self) -> float:
+        """Of the present state."""
+        return self._inner.time()
+
+    @property
+    def motion(self) -> str:
+        """'exact' or 'fast'. Another one may be set: it goes on from the present state."""
+        return str(self._settings["motion"])
+
+    @motion.setter
+    def motion(self, value: str) -> None:
+        self._change(motion=value)
+
+    def _change(self, **settings: Any) -> None:
+        changed = {**self._settings, **settings}
+        self._inner.set(_motion_settings(changed))
+        self._settings = changed
+
+    def advance_to(self, t: float) -> None:
+        """Moves all bodies to the time t: exactly, or by whole steps until it is not before t.
+
+        Other Python threads run meanwhile. After Ctrl-C the world is at the time of the last event or step.
+
+        Raises
+        ------
+        ValueError
+            Where t is before the present time, or a number that was written into a view is not finite.
+        RuntimeError
+            Where the motion cannot go on.
+        """
+        if not np.isfinite(t) or t < self.time:
+            raise ValueError(f"the world is at the time {self.time} and cannot move to {t}")
+        self._inner.advance_to(float(t))
+
+    def step(self, h: float | None = None, count: int = 1) -> None:
+        """`count` steps of the time h each; without h of that of the fast motion."""
+        if count < 0:
+            raise ValueError(f"count is {count}; steps go forwards")
+        size = self._settings["step"] if h is None else float(h)
+        if not (np.isfinite(size) and size > 0):
+            raise ValueError(f"h is {size}; it must be positive")
+        if self.motion == "exact":
+            self._inner.advance_to(self.time + size * count)
+            return
+        if size != self._settings["step"]:
+            self._change(step=size)
+        self._inner.advance(count)
+
+    @property
+    def contacts(self) -> Contacts:
+        """The contacts of the last move."""
+        fields = self._inner.events()
+        change = _CHANGES[fields.pop("change")]
+        return Contacts(change=change, lost=self._inner.lost_events(), **fields)
+
+    # ---- sums over all bodies ----
+
+    @property
+    def kinetic_energy(self) -> float:
+        """Of all bodies that move, with their spins."""
+        return self._inner.kinetic_energy()
+
+    @property
+    def potential_energy(self) -> float:
+        """Of gravity, springs and attraction."""
+        return self._inner.potential_energy()
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential energy."""
+        return self.kinetic_energy + self.potential_energy
+
+    @property
+    def momentum(self) -> Floats:
+        """The sum of mass times velocity, shape (d,)."""
+        return self._inner.momentum()
+
+    @property
+    def angular_momentum(self) -> Floats:
+        """About the origin, with the spins; shape (3,), in the plane (1,)."""
+        return self._inner.angular_momentum()
+
+    # ---- questions ----
+
+    def ray(self, origin: ArrayLike, direction: ArrayLike, reach: float = np.inf) -> RayHit | None:
+        """The first body or wall that a ray meets, None where it meets nothing."""
+        hits = self._inner.ray(_numbers("origin", origin), _numbers("direction", direction), reach, False)
+        return RayHit(*hits[0]) if hits else None
+
+    def rays(self, origin: ArrayLike, direction: ArrayLike, reach: float = np.inf) -> list[RayHit]:
+        """All bodies and walls that a ray meets, the nearest first."""
+        hits = self._inner.ray(_numbers("origin", origin), _numbers("direction", direction), reach, True)
+        return [RayHit(*hit) for hit in hits]
+
+    def in_sphere(self, centre: ArrayLike, radius: float) -> tuple[list[int], list[int]]:
+        """The bodies and the walls that a ball touches."""
+        return self._inner.in_sphere(_numbers("centre", centre), radius)
+
+    def in_box(self, lower: ArrayLike, upper: ArrayLike) -> tuple[list[int], list[int]]:
+        """The bodies and the walls that a box with its faces along the axes touches."""
+        return self._inner.in_box(_numbers("lower", lower), _numbers("upper", upper))
+
+    def nearest(self, point: ArrayLike, count: int = 1) -> list[tuple[int, float]]:
+        """The bodies whose surfaces are nearest to a point, each with its distance, below 0 inside."""
+        if count < 0:
+            raise ValueError(f"count is {count}")
+        return self._inner.nearest(_numbers("point", point), count)
+
+    # ---- Python's own ----
+
+    def snapshot(self) -> bytes:
+        """The state as bytes, with that of the motion: a restored world goes on to the same bits."""
+        return self._inner.save()
+
+    def restore(self, state: bytes) -> None:
+        """Takes over the state of a snapshot. ValueError or RuntimeError where the bytes are none; nothing changes then."""
+        self._retire()
+        self._inner.restore(bytes(state))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._dimension, self._settings, self.snapshot())
+
+    def copy(self) -> World:
+        """Another world in the same state."""
+        return _restored(self._dimension, self._settings, self.snapshot())
+
+    def plot(self, ax: Any = None) -> Any:
+        """The bodies as discs, in space seen along y, by matplotlib. Returns the axes."""
+        try:
+            from matplotlib import pyplot
+            from matplotlib.collections import PatchCollection
+            from matplotlib.patches import Circle
+        except ImportError as error:
+            raise ImportError("World.plot needs matplotlib: apt install python3-matplotlib") from error
+        if ax is None:
+            _, ax = pyplot.subplots()
+        places = self.positions[:, [0, -1]]
+        circles = [Circle((x, y), r) for (x, y), r in zip(places, self.radii)]
+        ax.add_collection(PatchCollection(circles, alpha=0.7))
+        for normal, offset, _ in self.walls:
+            across = np.array([normal[0], normal[-1]])
+            if np.linalg.norm(across) > 0.5:
+                through = across * offset / (across @ across)
+                ax.axline(through, through + np.array([-across[1], across[0]]), color="black", linewidth=1)
+        ax.set_aspect("equal")
+        ax.set_xlabel("x")
+        ax.set_ylabel("y" if self._dimension == 2 else "z")
+        ax.set_title(f"t = {self.time:.6g}")
+        ax.autoscale_view()
+        return ax
+
+    def __repr__(self) -> str:
+        return f"<continuo.World: {len(self)} bodies in {self._dimension} dimensions, {self.motion}, t={self.time:.6g}>"
+
+
+def _restored(dimension: Literal[2, 3], settings: dict[str, Any], state: bytes) -> World:
+    world = World(dimension, **settings)
+    world.restore(state)
+    return world
+
+
+def _motion_settings(settings: dict[str, Any]) -> _continuo.MotionSettings:
+    if settings["motion"] not in ("exact", "fast"):
+        raise ValueError(f"motion is {settings['motion']!r}; it can be 'exact' or 'fast'")
+    result = _continuo.MotionSettings()
+    result.exact = settings["motion"] == "exact"
+    for name in ("step", "tolerance"):
+        if not (np.isfinite(settings[name]) and settings[name] > 0):
+            raise ValueError(f"{name} is {settings[name]}; it must be positive")
+    for name in ("substeps", "threads"):
+        if int(settings[name]) != settings[name] or not 1 <= settings[name] <= 10_000:
+            raise ValueError(f"{name} is {settings[name]}; it must be a whole number from 1 on")
+    contact_time = settings["contact_time"]
+    result.step, result.tolerance = float(settings["step"]), float(settings["tolerance"])
+    result.substeps, result.threads = int(settings["substeps"]), int(settings["threads"])
+    result.sleep_after = _not_negative("sleep_after", settings["sleep_after"])
+    result.contact_time = None if contact_time is None else _not_negative("contact_time", contact_time)
+    result.contact_events = int(_not_negative("contact_events", settings["contact_events"]))
+    return result
+
+
+def _handle(body: Any) -> int:
+    if not isinstance(body, (int, np.integer)) or isinstance(body, bool):
+        raise TypeError(f"a body is named by the int that add returned, not by a {type(body).__name__}")
+    if body < 0:
+        raise KeyError(f"there is no body {body}")
+    return int(body)
+
+
+def _not_negative(name: str, value: float) -> float:
+    if not (np.isfinite(value) and value >= 0):
+        raise ValueError(f"{name} is {value}; it must be 0 or more, and finite")
+    return float(value)
+
+
+def _numbers(name: str, value: ArrayLike) -> Floats:
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"{name} is an array of {array.dtype}; it must be numbers")
+    return array.astype(np.float64)
