@@ -171,40 +171,31 @@ class World:
         n = 1 if one else len(centres)
         spins = 1 if d == 2 else 3
 
-        def column(name: str, value: ArrayLike, width: int = 1) -> Floats:
-            values = _numbers(name, value)
-            if width > 1:
-                allowed: tuple[tuple[int, ...], ...] = ((), (width,), (n, width))
-            else:
-                allowed = ((), (n,), (n, 1))
-            if values.shape not in allowed:
-                shapes = " or ".join(map(str, allowed))
-                raise ValueError(f"{name} has the shape {values.shape}; it must be {shapes} for {n} bodies")
-            if width == 1 and values.ndim == 1:
-                values = values[:, None]
-            return np.broadcast_to(values, (n, width))
-
-        rows = np.hstack(
-            [
-                centres.reshape(n, d),
-                column("velocity", velocity, d),
-                column("spin", spin, spins),
-                column("radius", radius),
-                column("mass", 1.0 if mass is None else mass),
-                column("density", density),
-                column("restitution", restitution),
-                column("friction", friction),
-                column("rolling_resistance", rolling_resistance),
-            ]
-        )
-        groups = column("group", group)[:, 0]
-        if np.any(groups < 0) or np.any(groups >= 32) or np.any(groups != np.floor(groups)):
+        values = {
+            "position": centres,
+            "velocity": velocity,
+            "spin": spin,
+            "radius": radius,
+            "mass": 1.0 if mass is None else mass,
+            "density": density,
+            "restitution": restitution,
+            "friction": friction,
+            "rolling_resistance": rolling_resistance,
+            "group": group,
+        }
+        widths = {"position": d, "velocity": d, "spin": spins}
+        rows = np.empty((n, 2 * d + spins + 7))
+        place = 0
+        for name, value in values.items():
+            width = widths.get(name, 1)
+            rows[:, place : place + width] = _columns(name, value, n, width)
+            place += width
+        groups = [int(number) for number in rows[:, -1] if number in range(32)]
+        if len(groups) < n:
             raise ValueError("groups are whole numbers from 0 to 31")
-        is_fixed = column("fixed", np.asarray(fixed, dtype=np.float64))[:, 0] != 0
+        is_fixed = [bool(fixed)] * n if isinstance(fixed, bool) else _fixed(fixed, n)
         self._retire()
-        handles = self._inner.add(
-            rows, [mass is not None] * n, is_fixed.tolist(), [int(g) for g in groups]
-        )
+        handles = self._inner.add(np.ascontiguousarray(rows[:, :-1]), [mass is not None] * n, is_fixed, groups)
         return handles[0] if one else np.array(handles, dtype=np.int64)
 
     def remove(self, body: int) -> None:
@@ -583,6 +574,26 @@ def _not_negative(name: str, value: float) -> float:
     if not (np.isfinite(value) and value >= 0):
         raise ValueError(f"{name} is {value}; it must be 0 or more, and finite")
     return float(value)
+
+
+def _columns(name: str, value: ArrayLike, n: int, width: int) -> Floats:
+    """The numbers of n bodies: one value for all, or one for each."""
+    values = _numbers(name, value)
+    shape = values.shape
+    if width > 1:
+        allowed: tuple[tuple[int, ...], ...] = ((), (width,), (n, width))
+    else:
+        allowed = ((), (n,), (n, 1))
+    if shape not in allowed:
+        raise ValueError(f"{name} has the shape {shape}; it must be {' or '.join(map(str, allowed))} for {n} bodies")
+    return values[:, None] if width == 1 and values.ndim == 1 else values
+
+
+def _fixed(value: ArrayLike, n: int) -> list[bool]:
+    flags = np.asarray(value)
+    if flags.dtype.kind != "b" or flags.shape not in ((), (n,)):
+        raise ValueError(f"fixed must be True, False or an array of them of the shape ({n},)")
+    return [bool(flag) for flag in np.broadcast_to(flags, (n,))]
 
 
 def _numbers(name: str, value: ArrayLike) -> Floats:
