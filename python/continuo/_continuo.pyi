@@ -1,15 +1,26 @@
 """What the package calls in C++."""
 
-from typing import Any
+from typing import Any, Callable, Optional, Union
 
-import numpy.typing as npt
-
-Array = npt.NDArray[Any]
 import numpy as np
-from numpy.typing import NDArray
+import numpy.typing as npt
+from numpy.typing import ArrayLike, NDArray
 
 __version__: str
+_Array = NDArray[np.float64]
+_Messages = Optional[tuple[str, str]]  # as a terminal shows them, and as JSON
+_Range = Optional[tuple[float, float]]
+Array = npt.NDArray[Any]
 
+def canonical_name(name: str) -> str: ...
+def choose_method(
+    size: int,
+    rtol: float,
+    algebraic: bool = False,
+    accelerations: bool = False,
+    sparse: bool = False,
+    banded: bool = False,
+) -> str: ...
 class ContinuedRun:
     """A run that is continued while its function stays what it was."""
 
@@ -29,115 +40,15 @@ class DenseSolution:
     @property
     def n(self) -> int: ...
 
-class Native:
-    """A compiled right-hand side, which a run calls without the interpreter."""
-
-    def __init__(
-        self, address: int, jacobian: int = 0, user: int = 0, size: int | None = None, owner: object = None
-    ) -> None: ...
-    @property
-    def address(self) -> int: ...
-    @property
-    def jacobian(self) -> int: ...
-    @property
-    def user(self) -> int: ...
-    @property
-    def size(self) -> int | None: ...
-    @property
-    def owner(self) -> object: ...
-
-class Run:
-    """A run of one right-hand side."""
-
-    def __init__(
-        self,
-        fun: object,
-        t0: float,
-        t1: float,
-        y0: Array,
-        method: str,
-        rtol: float | Array,
-        atol: float | Array,
-        max_step: float,
-        times: Array | None,
-        dense: bool,
-        args: tuple[Any, ...] | None,
-        extras: dict[str, Any],
-    ) -> None: ...
-    def run(self) -> None: ...
-    def check(self) -> None: ...
-    def step(self) -> bool: ...
-    def take_error(self) -> BaseException | None: ...
-    def times(self) -> Array: ...
-    def states(self) -> Array: ...
-    def dense(self) -> DenseSolution: ...
-    def events(self) -> tuple[tuple[Array, Array, Array], ...]: ...
-    def summary(self) -> tuple[int, str, str, int, int, int, str, int, int]: ...
-    def y_at(self, t: float) -> Array: ...
-    def last_piece(self, t_old: float) -> DenseSolution: ...
-    def set_state(self, y: Array) -> None: ...
-    def restart(self) -> None: ...
-    def extend_to(self, t1: float) -> None: ...
-    @property
-    def t(self) -> float: ...
-    @property
-    def y(self) -> Array: ...
-    @property
-    def native(self) -> bool: ...
-
-class State:
-    """The state in a call of a function: a sequence of numbers that does what an array does."""
-
-def methods() -> list[tuple[str, int, int, bool, bool]]: ...
-def canonical_name(name: str) -> str: ...
-def choose_method(
-    size: int,
-    rtol: float,
-    algebraic: bool = False,
-    accelerations: bool = False,
-    sparse: bool = False,
-    banded: bool = False,
-) -> str: ...
-from collections.abc import Callable
-from typing import Any
-
-from numpy.typing import ArrayLike, NDArray
-
-__version__: str
-
-def is_native(f: object) -> bool: ...
-def through_times(run: Run, times: Array, most_steps: int) -> tuple[Array, dict[str, Array], int, int]: ...
-def evaluate_cubics(x: Array, c: Array, points: Array, nu: int, extrapolate: bool) -> Array: ...
-def solve_bvp(
-    fun: Callable[..., ArrayLike],
-    bc: Callable[..., ArrayLike],
-    x: NDArray[Any],
-    y: NDArray[Any],
-    p: NDArray[Any],
-    S: NDArray[Any],
-    first_value: NDArray[Any],
-    first_derivative: NDArray[Any],
-    fun_jac: Callable[..., Any] | None,
-    bc_jac: Callable[..., Any] | None,
-    tol: float,
-    bc_tol: float,
-    max_nodes: int,
-    progress: Callable[[int, float, float, int, int, bool], None] | None,
-) -> dict[str, Any]: ...
 def evaluate_cubics(
     x: NDArray[Any], c: NDArray[Any], points: NDArray[Any], nu: int, extrapolate: bool
 ) -> NDArray[Any]: ...
-from typing import Any, Callable, Optional, Union
-
-import numpy as np
-from numpy.typing import NDArray
-
-__version__: str
-
-_Array = NDArray[np.float64]
-_Messages = Optional[tuple[str, str]]  # as a terminal shows them, and as JSON
-_Range = Optional[tuple[float, float]]
-
+def is_native(f: object) -> bool: ...
+def is_reserved_word(word: str) -> bool: ...
+def load_model(
+    name: Union[str, bytes], text: Union[str, bytes], native: str = ..., values: dict[str, float] = ...
+) -> tuple[Optional[Model], _Messages]: ...
+def methods() -> list[tuple[str, int, int, bool, bool]]: ...
 class Model:
     """A checked model. Nothing of it changes."""
 
@@ -186,9 +97,37 @@ class ModelRun:
     def manifest(self) -> str: ...
     def summary(self, as_written: bool) -> str: ...
 
-def load_model(
-    name: Union[str, bytes], text: Union[str, bytes], native: str = ..., values: dict[str, float] = ...
-) -> tuple[Optional[Model], _Messages]: ...
+class MotionSettings:
+    """How a world is moved."""
+
+    exact: bool
+    step: float
+    substeps: int
+    threads: int
+    sleep_after: float
+    tolerance: float
+    contact_time: float | None
+    contact_events: int
+
+    def __init__(self) -> None: ...
+
+class Native:
+    """A compiled right-hand side, which a run calls without the interpreter."""
+
+    def __init__(
+        self, address: int, jacobian: int = 0, user: int = 0, size: int | None = None, owner: object = None
+    ) -> None: ...
+    @property
+    def address(self) -> int: ...
+    @property
+    def jacobian(self) -> int: ...
+    @property
+    def user(self) -> int: ...
+    @property
+    def size(self) -> int | None: ...
+    @property
+    def owner(self) -> object: ...
+
 class RightHandSide:
     """The equations of a model as a function of t and y."""
 
@@ -217,22 +156,65 @@ class RightHandSide:
     @property
     def user(self) -> int: ...
 
-def is_reserved_word(word: str) -> bool: ...
+class Run:
+    """A run of one right-hand side."""
 
-class MotionSettings:
-    """How a world is moved."""
+    def __init__(
+        self,
+        fun: object,
+        t0: float,
+        t1: float,
+        y0: Array,
+        method: str,
+        rtol: float | Array,
+        atol: float | Array,
+        max_step: float,
+        times: Array | None,
+        dense: bool,
+        args: tuple[Any, ...] | None,
+        extras: dict[str, Any],
+    ) -> None: ...
+    def run(self) -> None: ...
+    def check(self) -> None: ...
+    def step(self) -> bool: ...
+    def take_error(self) -> BaseException | None: ...
+    def times(self) -> Array: ...
+    def states(self) -> Array: ...
+    def dense(self) -> DenseSolution: ...
+    def events(self) -> tuple[tuple[Array, Array, Array], ...]: ...
+    def summary(self) -> tuple[int, str, str, int, int, int, str, int, int]: ...
+    def y_at(self, t: float) -> Array: ...
+    def last_piece(self, t_old: float) -> DenseSolution: ...
+    def set_state(self, y: Array) -> None: ...
+    def restart(self) -> None: ...
+    def extend_to(self, t1: float) -> None: ...
+    @property
+    def t(self) -> float: ...
+    @property
+    def y(self) -> Array: ...
+    @property
+    def native(self) -> bool: ...
 
-    exact: bool
-    step: float
-    substeps: int
-    threads: int
-    sleep_after: float
-    tolerance: float
-    contact_time: float | None
-    contact_events: int
+def solve_bvp(
+    fun: Callable[..., ArrayLike],
+    bc: Callable[..., ArrayLike],
+    x: NDArray[Any],
+    y: NDArray[Any],
+    p: NDArray[Any],
+    S: NDArray[Any],
+    first_value: NDArray[Any],
+    first_derivative: NDArray[Any],
+    fun_jac: Callable[..., Any] | None,
+    bc_jac: Callable[..., Any] | None,
+    tol: float,
+    bc_tol: float,
+    max_nodes: int,
+    progress: Callable[[int, float, float, int, int, bool], None] | None,
+) -> dict[str, Any]: ...
+class State:
+    """The state in a call of a function: a sequence of numbers that does what an array does."""
 
-    def __init__(self) -> None: ...
-
+def through_times(run: Run, times: Array, most_steps: int) -> tuple[Array, dict[str, Array], int, int]: ...
 class World2:
     """Bodies in the plane."""
 

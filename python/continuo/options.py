@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _continuo
 from .events import event_fields
-from .progress import progress_function
+from .progress_bar import progress_function
 from .right_hand_side import expression
 
 Array = npt.NDArray[Any]

@@ -106,3 +106,21 @@ def watcher(progress: ProgressOption, what: str) -> tuple[Optional[Callable[...,
         return None, lambda: None
     bar = ProgressBar(what)
     return bar, bar.close
+
+
+def progress_function(progress: object) -> Optional[Callable[[float, float], object]]:
+    """What a run of solve_ivp calls with t and the part that is done: the user's function, or a bar for True."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        bar = ProgressBar("solve_ivp")
+
+        def show(_: float, part: float) -> None:
+            bar(part)
+            if part >= 1:
+                bar.close()
+
+        return show
+    if callable(progress):
+        return progress
+    raise TypeError(f"`progress` must be True or a function of (t, part), and is {progress!r}")
