@@ -64,8 +64,8 @@ template <class System>
   X slope = x0, scratch = x0, further = x0;
   evaluate(system, interval.from, x0, slope);
   if (!detail::is_finite_state(slope)) return 1;  // the run says what is wrong
-  options.first_step = 0.5 * std::abs(
-      first_step(system, interval.from, x0, slope, 1, forward, longest, tolerance_of(options), scratch, further));
+  options.first_step = 0.5 * std::abs(first_step(system, interval.from, x0, slope, 1, forward, longest,
+                                                 tolerance_of(options), scratch, further));
   return 2;
 }
 

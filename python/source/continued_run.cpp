@@ -137,8 +137,8 @@ void add_continued_run(py::module_& module) {
       .def("advance_to", &ContinuedRun::advance_to, py::arg("t"), py::arg("most_steps"))
       .def("stop_at", &ContinuedRun::stop_at, py::arg("t"));
   module.def(
-      "is_native", [](const py::object& f) { return continuo::python::native_of(f, py::none()).has_value(); }, py::arg("f"),
-      "Whether this is a compiled function, which a run calls without the interpreter.");
+      "is_native", [](const py::object& f) { return continuo::python::native_of(f, py::none()).has_value(); },
+      py::arg("f"), "Whether this is a compiled function, which a run calls without the interpreter.");
   module.def("through_times", &continuo::python::through_times, py::arg("run"), py::arg("times"),
              py::arg("most_steps"));
 }
