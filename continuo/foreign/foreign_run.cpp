@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include <continuo/foreign/foreign_method.hpp>
+#include <continuo/foreign/methods/foreign_method.hpp>
 #include <continuo/foreign/foreign_run.hpp>
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/catalogue.hpp>

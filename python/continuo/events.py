@@ -68,7 +68,7 @@ def _stop_after(terminal: Any, name: str) -> int:
         return 0
     count = int(terminal)
     if count < 0 or count != terminal:
-        raise ValueError(f"`terminal` of the event {name} must be a truth value or a positive whole number")
+        raise ValueError(f"The `terminal` attribute of the event {name} must be a truth value or a positive number.")
     return count
 
 

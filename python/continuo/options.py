@@ -293,7 +293,7 @@ def _jacobian(options: dict[str, Any], t0: float, y: Array, args: Any, extras: d
         extras["jac_constant"] = _as_real(dense) if is_complex else np.ascontiguousarray(dense, dtype=float)
         return
     first = jac(t0, y.copy(), *(args or ()))
-    if first is not None:
+    if first is not None and n > 1:
         _check_shape(first if _is_sparse(first) else np.asarray(first), n, "jac")
     if _is_sparse(first) and n >= LEAST_SPARSE_SIZE and not is_complex:
         coo = first.tocoo()

@@ -38,6 +38,23 @@ class RunControl {
   PyObject *type_ = nullptr, *value_ = nullptr, *traceback_ = nullptr;
 };
 
+/// The GIL for a callback, where the run does not have it.
+class GilForCallback {
+ public:
+  explicit GilForCallback(bool held) : held_(held) {
+    if (!held_) state_ = PyGILState_Ensure();
+  }
+  GilForCallback(const GilForCallback&) = delete;
+  GilForCallback& operator=(const GilForCallback&) = delete;
+  ~GilForCallback() {
+    if (!held_) PyGILState_Release(state_);
+  }
+
+ private:
+  bool held_;
+  PyGILState_STATE state_{};
+};
+
 /// In what form a function gets the state.
 enum class Handing { automatic, array, list };
 

@@ -22,27 +22,6 @@ using X = std::vector<double>;
 constexpr std::size_t most_held = 64;
 constexpr double seconds_between_looks = 0.02, seconds_between_progress = 0.1;
 
-/// The GIL for a callback, where the run does not have it.
-class GilForCallback {
- public:
-  explicit GilForCallback(bool held) : held_(held) {
-    if (!held_) state_ = PyGILState_Ensure();
-  }
-  GilForCallback(const GilForCallback&) = delete;
-  GilForCallback& operator=(const GilForCallback&) = delete;
-  ~GilForCallback() {
-    if (!held_) PyGILState_Release(state_);
-  }
-
- private:
-  bool held_;
-  PyGILState_STATE state_{};
-};
-
-void fill_not_a_number(double* numbers, std::size_t n) {
-  std::fill_n(numbers, n, std::numeric_limits<double>::quiet_NaN());
-}
-
 [[nodiscard]] bool is_main_thread() {
   static const unsigned long main_thread =
       py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
@@ -61,14 +40,6 @@ void read_tolerance(const py::object& given, bool complex, double& one, std::vec
     if (complex) each.push_back(array.data()[i]);
   }
   if (!each.empty()) one = *std::ranges::min_element(each);
-}
-
-// A guard that is no number has no side, and its events would be missed.
-[[nodiscard]] bool is_known(double value, const StateFunction& guard) {
-  if (!std::isnan(value)) return true;
-  PyErr_SetString(PyExc_ValueError,
-                  (guard.name() + " is not a number here, so that its zeros cannot be found").c_str());
-  return false;
 }
 
 [[nodiscard]] py::object extra(const py::dict& extras, const char* name) {
@@ -115,6 +86,10 @@ void Run::read_state(const py::array& y0) {
   const std::size_t numbers = settings_.form.numbers == Numbers::complex ? 2 : 1;
   y0_.resize(static_cast<std::size_t>(y0.size()) * numbers);
   std::memcpy(y0_.data(), y0.data(), y0_.size() * sizeof(double));
+  for (std::size_t i = 0; i < y0_.size(); ++i)
+    if (!std::isfinite(y0_[i]))
+      throw py::value_error("All components of the initial state `y0` must be finite, and that of number " +
+                            std::to_string(i / numbers) + " is not.");
 }
 
 std::unique_ptr<StateFunction> Run::function(const py::object& f, const std::string& name) {
@@ -173,10 +148,33 @@ bool Run::advance_by(Advance&& take_step) {
     below_spacing_ = true;
     return false;
   }
+  guards_unknown_ = false;
   const bool goes_on = take_step();
+  if (guards_unknown_ && !control_.failed()) check_guards(before);
   if (control_.failed()) return false;
   if (settings_.min_step > 0 && goes_on && is_below_min_step(before)) below_min_step_ = true;
   return goes_on && !below_min_step_;
+}
+
+// A guard that is no number has no side, and its events would be missed. Guards are also asked off the solution, to
+// learn how they are rounded: so it is looked for along the step.
+void Run::check_guards(double from) {
+  constexpr int parts = 8;
+  const GilForCallback gil(holds_gil_);
+  X x = run_->x();
+  for (int part = 1; part <= parts; ++part) {
+    const double t = part == parts ? run_->t() : from + (run_->t() - from) * part / parts;
+    run_->at(t, x);
+    for (const EventFunctions& event : events_) {
+      double value = 0;
+      StateFunction& guard = *event.guard;
+      const bool known = guard.call(t, x.data(), [&](PyObject* result) { return read_number(result, guard, &value); });
+      if (!known || !std::isnan(value)) continue;
+      PyErr_SetString(PyExc_ValueError,
+                      (guard.name() + " is not a number here, so that its zeros cannot be found").c_str());
+      return control_.take_error("continuo: at t = " + std::to_string(t));
+    }
+  }
 }
 
 bool Run::advance() {
@@ -264,53 +262,6 @@ void Run::extend_to(double t1) {
   if (run_) run_->extend_to(t1);
 }
 
-void Run::derivative(double t, const double* x, double* dxdt, void* run) {
-  auto& self = *static_cast<Run*>(run);
-  const GilForCallback gil(self.holds_gil_);
-  StateFunction& f = *self.fun_;
-  const std::size_t n = f.form().numbers == Numbers::complex ? f.form().size / 2 : f.form().size;
-  if (!f.call(t, x, [&](PyObject* result) { return read_vector(result, n, f, dxdt); }))
-    fill_not_a_number(dxdt, f.form().size);
-}
-
-void Run::accelerations(double t, const double* x, double* dxdt, void* run) {
-  const std::size_t n = static_cast<Run*>(run)->functions_->size / 2;
-  std::copy_n(x + n, n, dxdt);
-  derivative(t, x, dxdt + n, run);
-}
-
-void Run::native_accelerations(double t, const double* x, double* dxdt, void* run) {
-  const auto& self = *static_cast<Run*>(run);
-  const std::size_t n = self.functions_->size / 2;
-  std::copy_n(x + n, n, dxdt);
-  self.native_->derivative(t, x, dxdt + n, self.native_->user);
-}
-
-void Run::jacobian(double t, const double* x, double* rows, void* run) {
-  auto& self = *static_cast<Run*>(run);
-  const GilForCallback gil(self.holds_gil_);
-  StateFunction& f = *self.jac_;
-  const std::size_t n = f.form().numbers == Numbers::complex ? f.form().size / 2 : f.form().size;
-  if (!f.call(t, x, [&](PyObject* result) { return read_matrix(result, n, f, rows); }))
-    fill_not_a_number(rows, f.form().size * f.form().size);
-}
-
-void Run::jacobian_values(double t, const double* x, double* values, void* run) {
-  auto& self = *static_cast<Run*>(run);
-  const GilForCallback gil(self.holds_gil_);
-  StateFunction& f = *self.jac_;
-  const std::size_t entries = self.functions_->pattern.entries();
-  if (!f.call(t, x, [&](PyObject* result) { return read_vector(result, entries, f, values); }))
-    fill_not_a_number(values, entries);
-}
-
-void Run::constant_jacobian(double, const double*, double* rows, void* run) {
-  std::ranges::copy(static_cast<Run*>(run)->constant_jacobian_, rows);
-}
-void Run::constant_values(double, const double*, double* values, void* run) {
-  std::ranges::copy(static_cast<Run*>(run)->constant_jacobian_, values);
-}
-
 void Run::read_extras(const py::dict& extras, Options<X>& options) {
   second_order_ = !extra(extras, "second_order").is_none();
   progress_ = extra(extras, "progress");
@@ -359,57 +310,6 @@ void Run::read_jacobian(const py::dict& extras) {
     jac_ = function(jac, "jac");
     (values ? functions_->jacobian_values : functions_->jacobian) = {values ? jacobian_values : jacobian, this};
   }
-}
-
-void Run::read_events(const py::handle& events, Options<X>& options) {
-  for (const py::handle given : events) {
-    const auto fields = given.cast<py::tuple>();  // guard, direction, stop_after, action, at_limit, name
-    EventFunctions functions;
-    const std::string name = fields[5].cast<std::string>();
-    functions.guard = function(fields[0], "the event `" + name + "`");
-    if (!fields[3].is_none()) functions.action = function(fields[3], "the action of the event `" + name + "`");
-    if (!fields[4].is_none()) functions.at_limit = function(fields[4], "the action at the limit of `" + name + "`");
-    Event<X> event{.name = name};
-    StateFunction* const guard = functions.guard.get();
-    event.guard = [this, guard](double t, const X& x) {
-      const GilForCallback gil(holds_gil_);
-      double value = 1;
-      const auto read = [&](PyObject* result) {
-        return read_number(result, *guard, &value) && is_known(value, *guard);
-      };
-      if (!guard->call(t, x.data(), read)) return 1.0;
-      return value;
-    };
-    const double direction = fields[1].cast<double>();
-    event.direction = direction > 0 ? Direction::rises : direction < 0 ? Direction::falls : Direction::crosses;
-    event.stop_after = fields[2].cast<std::size_t>();
-    if (StateFunction* const action = functions.action.get())
-      event.action = [this, action](EventAction<X>& now) { act(*action, now); };
-    if (StateFunction* const action = functions.at_limit.get())
-      event.at_limit = [this, action](EventAction<X>& now) { act(*action, now); };
-    options.events.push_back(std::move(event));
-    events_.push_back(std::move(functions));
-    event_names_.push_back(name);
-  }
-}
-
-// The state that an action returns is the new one; None leaves it.
-void Run::act(StateFunction& action, EventAction<X>& now) {
-  const GilForCallback gil(holds_gil_);
-  const std::size_t n = settings_.form.numbers == Numbers::complex ? now.x.size() / 2 : now.x.size();
-  X after = now.x;
-  const bool acted = action.call(now.t, now.before.data(), [&](PyObject* result) {
-    return result == Py_None || read_vector(result, n, action, after.data());
-  });
-  if (acted && !std::ranges::all_of(after, [](double number) { return std::isfinite(number); })) {
-    PyErr_SetString(PyExc_ValueError, (action.name() + " gave a state that is not finite").c_str());
-    control_.take_error("");
-  }
-  if (!acted || control_.failed()) {
-    now.stop = true;
-    return;
-  }
-  now.x = after;
 }
 
 }  // namespace continuo::python

@@ -88,6 +88,7 @@ class Run {
   template <class Advance>
   bool advance_by(Advance&& take_step);
   bool advance();
+  void check_guards(double from);
   void report_progress(bool at_end);
   [[nodiscard]] bool is_below_min_step(double t_before) const;
   [[nodiscard]] pybind11::array numbers(const double* from, std::size_t rows, bool components_first) const;
@@ -115,7 +116,8 @@ class Run {
   double last_progress_ = 0;
   double end_without_run_ = 0;
   std::size_t checks_ = 0;  // evaluations of f by check
-  bool holds_gil_ = true, has_python_ = false, second_order_ = false, below_min_step_ = false, below_spacing_ = false;
+  bool holds_gil_ = true, has_python_ = false, second_order_ = false, below_min_step_ = false, below_spacing_ = false,
+       guards_unknown_ = false;
 };
 
 }  // namespace continuo::python

@@ -262,7 +262,7 @@ def test_options_without_effect_and_wrong_ones() -> None:
     for span in ((0, np.nan), (np.nan, 1)):
         with pytest.raises(ValueError, match="not finite"):
             solve_ivp(_decay, span, [1.0])
-    with pytest.raises(ValueError, match="not finite at the start"):
+    with pytest.raises(ValueError, match="All components of the initial state `y0` must be finite"):
         solve_ivp(_decay, (0, 1), [np.nan])
     result = solve_ivp(lambda t, y: y**2, (0, 2), [1.0])
     assert not result.success and result.status == -1 and abs(result.t[-1] - 1) < 1e-3

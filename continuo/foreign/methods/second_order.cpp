@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the methods for x'' = a(t, x).
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>

@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the multistep, stabilized and implicit extrapolation methods.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/explicit_rk/rkc2.hpp>
 #include <continuo/methods/extrapolation/seulex.hpp>
 #include <continuo/methods/multistep/adams.hpp>

@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the diagonally implicit methods.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/dirk/implicit_euler.hpp>
 #include <continuo/methods/dirk/implicit_midpoint.hpp>
 #include <continuo/methods/dirk/kencarp4.hpp>

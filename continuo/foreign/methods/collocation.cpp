@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the collocation and Rosenbrock methods.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/collocation/gauss4.hpp>
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/rosenbrock/rodas4.hpp>

@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the explicit methods with error control.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/explicit_rk/dormand_prince5.hpp>

@@ -1,5 +1,5 @@
-// A method as a run of a foreign system drives it. Each is instantiated once, in one of the methods_*.cpp, so that no
-// translation unit has to compile them all.
+// A method as a run of a foreign system drives it. Each is instantiated once, in one of the sources of this folder, so
+// that no translation unit has to compile them all.
 #pragma once
 #include <continuo/foreign/foreign_system.hpp>
 #include <continuo/solve/any_method.hpp>

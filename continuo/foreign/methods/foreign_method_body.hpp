@@ -1,8 +1,8 @@
-// The body of foreign_method; included only by the methods_*.cpp.
+// The body of foreign_method; included only by the sources of this folder.
 #pragma once
 #include <vector>
 
-#include <continuo/foreign/foreign_method.hpp>
+#include <continuo/foreign/methods/foreign_method.hpp>
 
 namespace continuo {
 

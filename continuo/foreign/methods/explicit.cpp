@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the simple explicit methods.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/explicit_rk/explicit_euler.hpp>
 #include <continuo/methods/explicit_rk/heun.hpp>
 #include <continuo/methods/explicit_rk/midpoint.hpp>

@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems by the methods that switch.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/automatic.hpp>
 
 namespace continuo {

@@ -1,7 +1,7 @@
 // Instantiates the runs of foreign systems whose mass is a full matrix.
 #include <vector>
 
-#include <continuo/foreign/foreign_method_body.hpp>
+#include <continuo/foreign/methods/foreign_method_body.hpp>
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
