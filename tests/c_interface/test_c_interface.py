@@ -4,6 +4,7 @@ import ctypes
 import math
 import pathlib
 import random
+import re
 import subprocess
 import threading
 import time
@@ -284,19 +285,33 @@ def test_wrong_integrations():
     assert library.continuo_integrate(FUNCTION(), None, 1, None, None, 1, None, 0, 0, None, None, 0) == MISUSE
 
 
-def compile_and_run(compiler, folder):
+def compile_and_run(compiler, folder, source):
     program = folder / "program"
     subprocess.run(
-        [*compiler, "-Wall", "-Wextra", "-Werror", "-pedantic", f"-I{ROOT}", str(ROOT / "tests/c_interface/program.c"),
-         "-o", str(program), library._name, "-lm", f"-Wl,-rpath,{pathlib.Path(library._name).resolve().parent}"],
+        [*compiler, "-Wall", "-Wextra", "-Werror", "-pedantic", f"-I{ROOT}", str(source), "-o", str(program),
+         library._name, "-lm", f"-Wl,-rpath,{pathlib.Path(library._name).resolve().parent}"],
         check=True,
     )  # fmt: skip
     return subprocess.run([program], check=True, capture_output=True, text=True).stdout
 
 
-def test_a_program_in_c(tmp_path):
-    for compiler in (["gcc", "-std=c99"], ["gcc", "-std=c11"], ["g++", "-x", "c++", "-std=c++17"]):
-        name = tmp_path / "-".join(compiler)
-        name.mkdir()
-        command = compiler if "c++" not in compiler else ["g++", "-std=c++17"]
-        assert compile_and_run(command, name) == "5 m, -10 m/s\n0 0\n1.000000 -0.000000\n0.540302 -0.841471\n"
+@pytest.mark.parametrize("compiler", ["gcc -std=c99", "gcc -std=c11", "g++ -std=c++17"])
+def test_a_program_in_c(compiler, tmp_path):
+    words = compiler.split()
+    source = ROOT / "tests/c_interface/program.c"
+    if words[0] == "g++":
+        source = tmp_path / "program.cpp"
+        source.write_text((ROOT / "tests/c_interface/program.c").read_text())
+    assert compile_and_run(words, tmp_path, source) == "5 m, -10 m/s\n0 0\n1.000000 -0.000000\n0.540302 -0.841471\n"
+
+
+def test_the_programs_of_the_page(tmp_path):
+    page = (ROOT / "docs/c_interface.md").read_text()
+    programs = re.findall(r"```c\n(.*?)```\n\n```output\n(.*?)```", page, re.DOTALL)
+    assert len(programs) == 2
+    for text, output in programs:
+        source = tmp_path / "page.c"
+        source.write_text(text)
+        assert compile_and_run(["gcc", "-std=c99"], tmp_path, source) == output
+    (in_python,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(in_python.replace('"libcontinuo.so"', repr(library._name)), "c_interface.md", "exec"), {})
