@@ -55,6 +55,8 @@ class Studies:
 
         def _part(self, name: str, native: Optional[_continuo.Model] = None) -> Any: ...
 
+        def _settable(self) -> list[str]: ...
+
     # ---- the mechanism ----------------------------------------------------------------------------------------------
 
     def study(
@@ -175,7 +177,8 @@ class Studies:
         vary : mapping or str or list of str, optional
             What is varied, beside what the text's ``sweep`` says. A mapping from names to arrays or lists of values,
             to ``(low, high, count)``, or to words such as ``"normal(0.5, 0.1)"``; or whole sentences, such as
-            ``"k from 1 to 10 count 50"``. Parameters that are varied by arrays may be keywords: ``k=[1, 2, 5]``.
+            ``"k from 1 to 10 count 50"``. Parameters, inputs and initial values of states that are varied by arrays may
+            be keywords: ``k=[1, 2, 5]``.
         runs : str or int, optional
             How many: ``"10000 sobol seed 7"``; without it every combination of the values, or what the text says.
         keep : str or list of str, optional
@@ -205,15 +208,16 @@ class Studies:
             ``result`` is an UnfinishedSweep: ``error.result.resume()`` makes the runs that are missing.
         """
         needed("xarray", "model.sweep()")
-        sentences = _sentences_of(vary)
+        sentences = self._sentences_of(vary)
         arrays = [name for name, value in options.items() if _is_several(value) and f"--{_dashed(name)}" not in
                   options_of("sweep")]  # fmt: skip
-        sentences += _sentences_of({name: options.pop(name) for name in arrays})
+        sentences += self._sentences_of({name: options.pop(name) for name in arrays})
         options.update(until=until, method=method, tol=tol, step=step, threads=threads)
-        options.update(keep=_joined(keep, ", "), runs=None if runs is None else str(runs), vary=sentences or None)
+        options.update(keep=_joined(keep, ", "), runs=None if runs is None else str(runs))
         declared = options_of("sweep")
         asked, values = _told_apart(declared, options)
-        given = self._settings_as_options(declared, "sweep", values, set)
+        given, held = self._settings_of_sweep(declared, values, set)
+        asked["vary"] = sentences + held
         folder = tempfile.TemporaryDirectory(prefix="continuo-")
         table = Path(os.path.abspath(os.fsdecode(out))) if out is not None else Path(folder.name) / "sweep.nc"
         if table.suffix != ".nc":
@@ -221,6 +225,29 @@ class Studies:
         asked["out"] = str(table)
         arguments = ["sweep", "-", *given, *_arguments("sweep", declared, asked)]
         return self._made_sweep(arguments, table, folder, check, progress)
+
+    def _settings_of_sweep(
+        self, declared: Mapping[str, Any], values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+    ) -> tuple[list[str], list[str]]:
+        """Parameters as options; inputs and initial values as what is varied over one value."""
+        given, initial = self._resolved_all(values, more, [name.strip("-").replace("-", "_") for name in declared])
+        inputs = frozenset(one[0] for one in self._part("inputs"))
+        settings = [f"--set={name}={value!r}" for name, value in given.items() if name not in inputs]
+        held = {name: [value] for name, value in given.items() if name in inputs}
+        return settings, self._sentences_of({**held, **{name: [value] for name, value in initial.items()}})
+
+    def _sentences_of(self, vary: Any) -> list[str]:
+        """What is varied, in the words of the language; a state by where it begins."""
+        if not isinstance(vary, Mapping):
+            return _sentences_of(vary)
+        start = self._native.span[0] or 0.0
+        settable = frozenset(self._settable())
+        return _sentences_of(
+            {
+                name if name in settable or not self._native.states_named(name) else f"{name}({start:g})": values
+                for name, values in vary.items()
+            }
+        )
 
     def _made_sweep(
         self,
