@@ -46,9 +46,9 @@ class ForeignRecord {
  public:
   using X = std::vector<double>;
   struct Wanted {
-    bool steps = true;          // the state after every step, and on both sides of an event that changes it
-    bool dense = false;         // the polynomial of every step
-    std::vector<double> times;  // the states at these times, in the direction of time
+    bool steps = true;            // the state after every step, and on both sides of an event that changes it
+    bool dense = false;           // the polynomial of every step
+    std::vector<double> times{};  // the states at these times, in the direction of time
   };
   struct Event {
     std::size_t number;

@@ -83,7 +83,7 @@ class ForeignSystem {
         values[p] = values_[pattern.row(p) * x.size() + j];
   }
   [[nodiscard]] bool has_mass() const { return !functions_->mass.empty(); }
-  [[nodiscard]] double mass(std::size_t i) const { return functions_->mass[i]; }
+  [[nodiscard]] double mass(std::size_t i) const { return has_mass() ? functions_->mass[i] : 1; }
 
  private:
   std::shared_ptr<const ForeignFunctions> functions_;
