@@ -43,10 +43,6 @@ _CODES = {
 }
 _OTHER = (-4, -3)
 
-# A run goes as far beyond the time it is asked for as this many times the way to it, so that its steps need not be
-# cut there; farther, the digits of times between would suffer in long steps.
-_BEYOND = 8.0
-
 _VODE_OPTIONS: dict[str, Any] = {
     "method": "adams", "with_jacobian": False, "rtol": 1e-6, "atol": 1e-12, "lband": None, "uband": None, "order": 12,
     "nsteps": 500, "max_step": 0.0, "min_step": 0.0, "first_step": 0.0}
@@ -61,7 +57,7 @@ _DOP853_OPTIONS: dict[str, Any] = {**_DOP_OPTIONS, "ifactor": 6.0, "dfactor": 0.
 
 _SCIPY_OPTIONS = {"vode": _VODE_OPTIONS, "zvode": _VODE_OPTIONS, "lsoda": _LSODA_OPTIONS, "dopri5": _DOP_OPTIONS,
                   "dop853": _DOP853_OPTIONS}
-_SCIPY_METHODS = {"lsoda": "LSODA", "dopri5": "RK45", "dop853": "DOP853"}
+_SCIPY_METHODS = {"lsoda": "auto", "dopri5": "RK45", "dop853": "DOP853"}
 _WITHOUT_EFFECT = frozenset({"order", "safety", "ifactor", "dfactor", "beta", "ixpr", "max_order_ns", "max_order_s"})
 
 
@@ -180,9 +176,6 @@ class ode:  # noqa: N801  # SciPy's name
         """The next call begins a run anew, from (t, y)."""
         self._run: _continuo.Run | None = None
         self._continued: _continuo.ContinuedRun | None = None
-        self._begun_with: tuple[Any, ...] = ()
-        self._direction = 0.0
-        self._end = 0.0
         self._lands = False
 
     @property
@@ -302,8 +295,13 @@ class ode:  # noqa: N801  # SciPy's name
         y : ndarray, shape (n,)
             The state, `y`. Where the run has failed, that of the last step, whose time is `t`.
         """
-        integrator = self._integrator()
+        integrator = self._set if self._set is not None else self._integrator()
         t = float(t)
+        if self._continued is not None and self._solout is None and not step and not relax:
+            y = self._continued.go_on(t, self._y, self._functions(), integrator.nsteps)
+            if y is not None:
+                self._y, self.t, self._code = y, t, 1 if integrator.is_dop else 2
+                return y
         if not np.isfinite(t):
             raise ValueError(f"the time to integrate to must be finite, and is {t}")
         if self._solout is not None:
@@ -330,17 +328,11 @@ class ode:  # noqa: N801  # SciPy's name
 
     def _prepare(self, t: float) -> None:
         """Have a run that leads from (t, y) to t and somewhat beyond."""
-        if self._continued is not None and (
-                any(now is not then for now, then in zip(self._functions(), self._begun_with))
-                or self._direction * (t - self.t) < 0 or self._continued.has_changed(self._y)):
+        if self._continued is not None and not self._continued.leads_to(t, self._y, self._functions()):
             self._take_error_of_probe()
             self._forget()
-        end = t if self._lands else t + _BEYOND * (t - self.t)
-        if self._run is None:
-            self._begin(end)
-        elif self._direction * (self._end - t) < 0:
-            self._run.extend_to(end)
-            self._end = end
+        if self._continued is None:
+            self._begin(t if self._lands else t + _continuo.ContinuedRun.beyond * (t - self.t))
 
     def _take_error_of_probe(self) -> None:
         error = None if self._run is None else self._run.take_error()
@@ -359,10 +351,7 @@ class ode:  # noqa: N801  # SciPy's name
         if "first_step" in options:
             options["first_step"] = min(options["first_step"], abs(end - self.t))
         self._run = begin_run(self.f, self.t, end, self._y, integrator.method, options, args=self.f_params or None)
-        self._direction = 1.0 if end > self.t else -1.0
-        self._end = end
-        self._continued = _continuo.ContinuedRun(self._run, self.t, self._direction)
-        self._begun_with = self._functions()
+        self._continued = _continuo.ContinuedRun(self._run, self.t, end, self._lands, self._functions())
 
     def _jacobian(self, options: dict[str, Any]) -> Callable[..., Any]:
         assert self.jac is not None
@@ -388,8 +377,7 @@ class ode:  # noqa: N801  # SciPy's name
         if error is None and why == 0:
             return 0
         # Beyond t the function may have no value, which is no reason to fail before it: once more, as far as t alone.
-        goes_beyond = self._direction * (self._end - t) > 0 and why != 2
-        if goes_beyond and (error is None or isinstance(error, Exception)):
+        if self._continued.goes_beyond(t) and why != 2 and (error is None or isinstance(error, Exception)):
             self.t, self._y = self._run.t, self._run.y
             self._forget()
             self._lands = True

@@ -290,10 +290,10 @@ def odeint(
 def _all_at_once(begin: Callable[..., _continuo.Run], times: Array, y: Array) -> _Parts:
     """One run whose record has the states at the times."""
     parts = _Parts(times, y, begin, 0)
-    distinct, places = np.unique(times, return_inverse=True)
-    if times[-1] < times[0]:
-        distinct, places = distinct[::-1], len(distinct) - 1 - places
-    run = begin(float(times[0]), float(times[-1]), y, np.ascontiguousarray(distinct))
+    moves = times[1:] != times[:-1]
+    repeats = not moves.all()
+    distinct = times[np.concatenate(([True], moves))] if repeats else times
+    run = begin(float(times[0]), float(times[-1]), y, distinct)
     run.run()
     error = run.take_error()
     if error is not None:
@@ -302,6 +302,10 @@ def _all_at_once(begin: Callable[..., _continuo.Run], times: Array, y: Array) ->
     status, _, outcome, *_, ending, _, _ = run.summary()
     if status < 0:
         parts.code, parts.outcome = _CODES.get(ending, _OTHER), outcome
+    if not repeats:
+        parts.states[: len(found)] = found
+        return parts
+    places = np.concatenate(([0], np.cumsum(moves)))
     reached = places < len(found)
     parts.states[reached] = found[places[reached]]
     return parts

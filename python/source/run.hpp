@@ -61,8 +61,12 @@ class Run {
   [[nodiscard]] const Outcome<double>& outcome() const;
   [[nodiscard]] Statistics statistics() const;
   [[nodiscard]] bool native() const { return native_.has_value(); }
+  /// Whether a callback has failed, whose exception has not been taken yet.
+  [[nodiscard]] bool failed() const { return control_.failed(); }
   /// f at (t, x), outside of the run; not numbers where it fails.
-  [[nodiscard]] std::vector<double> derivative_at(double t, const std::vector<double>& x);
+  void derivative_at(double t, const std::vector<double>& x, std::vector<double>& dxdt);
+  /// The state at a time of the last step.
+  void state_at(double t, std::vector<double>& x);
   /// Continues from this state.
   void set_state(const pybind11::array& y);
   /// f has changed: the method begins anew.
