@@ -8,6 +8,7 @@ import subprocess
 import sys
 import textwrap
 import types
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -279,6 +280,16 @@ def test_the_command_is_found_or_missed(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv("PATH", "")
     with pytest.raises(CommandError, match="PATH"):
         command_path()
+
+
+def test_what_starts_the_command_may_talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    program = tmp_path / "continuo"
+    program.write_text(f'#!/bin/sh\necho building >&2\nexec {command_path()} "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("CONTINUO_COMMAND", str(program))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert Model(text=DAMPED).linearize().A.shape == (2, 2)
 
 
 def test_a_command_that_crashes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
