@@ -10,12 +10,13 @@ import threading
 import warnings
 import weakref
 from pathlib import Path
-from typing import Any, Iterable, Mapping, NamedTuple, Optional, Union
+from typing import Any, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
 
 from . import _continuo
 from .errors import Interrupted, ModelError, ModelWarning, RunError, parsed
 from .model_run import Run
 from .progress_bar import ProgressOption, watcher
+from .right_hand_side import RightHandSide
 from .run_options import (
     Tolerance,
     contents,
@@ -170,6 +171,38 @@ class Model(Studies):
         """Gives all parameters, inputs and initial values back those in the text."""
         self._given.clear()
         self._initial.clear()
+
+    # ---- as a function ----------------------------------------------------------------------------------------------
+
+    def right_hand_side(self, native: str = "auto") -> RightHandSide:
+        """The function f of y' = f(t, y), with the parameters as they are now: for the solvers, or to be called.
+
+        Parameters
+        ----------
+        native : {'auto', 'always', 'never'}
+            When the equations become machine code.
+
+        Returns
+        -------
+        RightHandSide
+            y has the states in their order; its parameters are set apart from those of this model.
+
+        Raises
+        ------
+        ModelError
+            Where the model is more than ordinary differential equations: events, modes, algebraic equations, bodies.
+        """
+        name = self._folder / Path(os.fsdecode(self._source_name)).name  # the tables that the text names are there
+        try:
+            f = RightHandSide(self.text, str(name), native)
+            f._set_parameters(self._given)
+        except ValueError as error:
+            raise ModelError(str(error)) from None
+        return f
+
+    def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
+        """The compiled equations for the solvers: a model stands for its right-hand side."""
+        return self.right_hand_side().__continuo_native__(args)
 
     # ---- what is in it ----------------------------------------------------------------------------------------------
 

@@ -414,3 +414,21 @@ def test_solvers_take_them_with_arguments() -> None:
         continuo.solve_ivp(traced, (0, 1), [1, 0, 0])
     with pytest.raises(ValueError, match="E210"):
         continuo.solve_ivp("x' = q", (0, 1), [1])
+
+
+def test_models_of_equations_are_functions(tmp_path: Any) -> None:
+    (tmp_path / "pull.csv").write_text("x,y\n0,0\n1,2\n2,2\n")
+    file = tmp_path / "spring.sim"
+    file.write_text('table pull from "pull.csv"\nparam k = 1\nx\'\' = -k*interp(pull, x)\nx(0) = 1; x\'(0) = 0\nrun 0..1\n')
+    model = continuo.Model(file)
+    model.k = 3
+    f = model.right_hand_side()
+    model.k = 4
+    assert f.states == ["x", "x'"] and f.parameters["k"] == 3
+    assert np.array_equal(f(0, [0.5, 7]), [7, -3])
+    end = continuo.solve_ivp(model, (0, 0.1), [0.5, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+    assert np.allclose(end, [0.5 * math.cos(math.sqrt(8) * 0.1), -0.5 * math.sqrt(8) * math.sin(math.sqrt(8) * 0.1)])
+    assert np.array_equal(f.initial_state, [1, 0])
+    bouncing = continuo.Model(text="h' = -1; h(0) = 1\nwhen h falls through 0 { h := 1 }\nrun 0..1")
+    with pytest.raises(continuo.ModelError, match="it has events"):
+        bouncing.right_hand_side()
