@@ -161,7 +161,8 @@ def solve_ivp(
             The run fails after as many steps.
         state : {'auto', 'array', 'list'}
             In what form a Python `fun` gets the state. 'auto' hands over a sequence that has all of an array but is
-            cheaper, where there are few components, and an array where `fun` computes with arrays.
+            cheaper, where there are few components, and an array where `fun` computes with arrays. A call that fails
+            with the sequence is tried once with an array.
         progress : True or callable
             A bar on stderr, or ``progress(t, part)``, called ten times a second.
         names : list of str

@@ -81,7 +81,7 @@ class OdeResult(Result):
     y_after_events : list of ndarray or None
         The same after its action. Only where an event has one.
     nfev, njev, nlu : int
-        Evaluations of the right-hand side (with those for differences), of the Jacobian, LU decompositions.
+        Evaluations of the right-hand side (without those for differences), of the Jacobian, LU decompositions.
     status : int
         0: the end was reached; 1: an event ended the run; -1: the run failed.
     message : str

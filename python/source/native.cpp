@@ -76,7 +76,9 @@ template <class Function>
   const py::object number = ctypes.attr("c_double");
   const bool first = arguments > 0 && types[py::int_(0)].ptr() == number.ptr();
   if (!first || (arguments != 3 && arguments != 4)) refuse("of ctypes", py::str(types).cast<std::string>());
-  return native_at(address_of_ctypes(f), arguments, user, f);
+  Native native = native_at(address_of_ctypes(f), arguments, user, f);
+  native.may_write_nothing = true;
+  return native;
 }
 
 // The tuple of a LowLevelCallable begins with a capsule of the function, named by its signature.

@@ -17,7 +17,9 @@ struct Native {
   void* user = nullptr;         // handed to both
   std::size_t size = 0;         // the number of components; 0: not known
   pybind11::object owner{};     // kept alive as long as the functions may be called
-  bool has_arguments = false;   // the further arguments are in `user`
+  // A callback of ctypes that raises writes nothing: its result begins as no numbers, lest the one before stay.
+  bool may_write_nothing = false;
+  bool has_arguments = false;  // the further arguments are in `user`
 };
 
 /// What `f` is, where it is compiled: a Native, an object with __continuo_native__, a cfunc of numba, a

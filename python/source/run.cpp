@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <continuo/solve/outcome.hpp>
@@ -116,6 +117,7 @@ void Run::set_functions(const py::object& fun) {
     if (settings_.form.numbers == Numbers::complex)
       throw py::type_error("a compiled right-hand side computes with real numbers, and y0 is complex");
     functions_->derivative = {native_->derivative, native_->user};
+    if (native_->may_write_nothing) functions_->derivative = {native_derivative, this};
     if (second_order_) functions_->derivative = {native_accelerations, this};
     if (native_->jacobian && !functions_->jacobian.call && !functions_->jacobian_values.call && !second_order_)
       functions_->jacobian = {native_->jacobian, native_->user};
@@ -133,8 +135,32 @@ void Run::set_functions(const py::object& fun) {
   holds_gil_ = n <= most_held;
 }
 
+/// Held while a run takes steps. A callback of the run, or another thread, that would have it take some more, or read
+/// what is being written, gets an exception.
+class Run::Busy {
+ public:
+  explicit Busy(Run& run) : run_(run) {
+    run.require_idle();
+    run.busy_ = true;
+  }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+  ~Busy() { run_.busy_ = false; }
+
+ private:
+  Run& run_;
+};
+
+void Run::require_idle() const {
+  if (busy_)
+    throw std::runtime_error(
+        "the run is taking a step: it cannot be advanced, changed or read by one of its functions or by another "
+        "thread meanwhile");
+}
+
 void Run::run() {
   if (!run_) return;
+  const Busy busy(*this);
   holds_gil_ ? run_with_gil() : run_without_gil();
   if (!progress_.is_none() && progress_) report_progress(true);
 }
@@ -224,6 +250,7 @@ void Run::report_progress(bool at_end) {
 
 bool Run::step() {
   if (!run_ || control_.failed()) return false;
+  const Busy busy(*this);
   const auto advanced = [&] { return advance_by([this] { return run_->advance(); }); };
   bool goes_on = false;
   if (holds_gil_) {
@@ -248,16 +275,19 @@ bool Run::is_below_min_step(double t_before) const {
 }
 
 void Run::set_state(const py::array& y) {
+  require_idle();
   if (!run_) return;
   read_state(y);
   run_->set_state(y0_);
 }
 
 void Run::restart() {
+  require_idle();
   if (run_) run_->restart();
 }
 
 void Run::extend_to(double t1) {
+  require_idle();
   settings_.t1 = t1;
   if (run_) run_->extend_to(t1);
 }

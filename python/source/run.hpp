@@ -1,5 +1,6 @@
 // A run of a Python or a compiled right-hand side: what solve_ivp and the solver classes drive.
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -74,6 +75,7 @@ class Run {
   void extend_to(double t1);
 
  private:
+  class Busy;
   struct EventFunctions {
     std::unique_ptr<StateFunction> guard, action, at_limit;
   };
@@ -92,12 +94,14 @@ class Run {
   template <class Advance>
   bool advance_by(Advance&& take_step);
   bool advance();
+  void require_idle() const;
   void check_guards(double from);
   void report_progress(bool at_end);
   [[nodiscard]] bool is_below_min_step(double t_before) const;
   [[nodiscard]] pybind11::array numbers(const double* from, std::size_t rows, bool components_first) const;
 
   static void derivative(double t, const double* x, double* dxdt, void* run);
+  static void native_derivative(double t, const double* x, double* dxdt, void* run);
   static void accelerations(double t, const double* x, double* dxdt, void* run);
   static void native_accelerations(double t, const double* x, double* dxdt, void* run);
   static void jacobian(double t, const double* x, double* rows, void* run);
@@ -119,7 +123,8 @@ class Run {
   pybind11::object progress_;
   double last_progress_ = 0;
   double end_without_run_ = 0;
-  std::size_t checks_ = 0;  // evaluations of f by check
+  std::size_t checks_ = 0;         // evaluations of f by check
+  std::atomic<bool> busy_{false};  // taking steps: in another thread, or below in this one
   bool holds_gil_ = true, has_python_ = false, second_order_ = false, below_min_step_ = false, below_spacing_ = false,
        guards_unknown_ = false;
 };

@@ -34,10 +34,17 @@ void Run::accelerations(double t, const double* x, double* dxdt, void* run) {
   derivative(t, x, dxdt + n, run);
 }
 
+void Run::native_derivative(double t, const double* x, double* dxdt, void* run) {
+  const auto& self = *static_cast<Run*>(run);
+  fill_not_a_number(dxdt, self.functions_->size);
+  self.native_->derivative(t, x, dxdt, self.native_->user);
+}
+
 void Run::native_accelerations(double t, const double* x, double* dxdt, void* run) {
   const auto& self = *static_cast<Run*>(run);
   const std::size_t n = self.functions_->size / 2;
   std::copy_n(x + n, n, dxdt);
+  fill_not_a_number(dxdt + n, n);
   self.native_->derivative(t, x, dxdt + n, self.native_->user);
 }
 

@@ -38,20 +38,24 @@ py::array Run::numbers(const double* from, std::size_t rows, bool components_fir
 }
 
 py::array Run::times() const {
+  require_idle();
   return py::array_t<double>(static_cast<py::ssize_t>(record_.t.size()), record_.t.data());
 }
 
 py::array Run::states() const {
+  require_idle();
   return numbers(record_.x.data(), record_.t.size(), true);
 }
 
 py::object Run::dense() {
+  require_idle();
   const bool complex = settings_.form.numbers == Numbers::complex;
   if (record_.dense.pieces.empty()) record_.dense.add_constant(settings_.t0, settings_.t0, y0_);
   return py::cast(DenseSolution(record_.dense, complex));
 }
 
 py::tuple Run::events() const {
+  require_idle();
   py::list result;
   for (std::size_t i = 0; i < events_.size(); ++i) {
     std::vector<double> t, before, after;
@@ -113,6 +117,7 @@ py::tuple Run::summary() const {
 }
 
 py::array Run::y() const {
+  require_idle();
   const std::vector<double>& x = run_ ? run_->x() : y0_;
   const bool complex = settings_.form.numbers == Numbers::complex;
   const auto n = static_cast<py::ssize_t>(complex ? x.size() / 2 : x.size());
@@ -122,12 +127,14 @@ py::array Run::y() const {
 }
 
 py::array Run::y_at(double t) {
+  require_idle();
   std::vector<double> x = run_ ? run_->x() : y0_;
   if (run_) run_->at(t, x);
   return py::array(numbers(x.data(), 1, false).attr("ravel")());
 }
 
 py::object Run::last_piece(double t_old) {
+  require_idle();
   ForeignDense dense{.size = y0_.size(), .pieces = {}, .coefficients = {}, .ends = {}};
   if (!run_ || run_->t() == t_old) {
     dense.add_constant(t_old, t(), run_ ? run_->x() : y0_);

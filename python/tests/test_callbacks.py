@@ -1,5 +1,6 @@
 """Functions that a run calls: the state they get, the results they give, and every fault in them."""
 
+import ctypes
 import fractions
 import math
 import sys
@@ -241,3 +242,31 @@ def test_errors_of_solver_classes() -> None:
         while solver.status == "running":
             solver.step()
     assert solver.status == "failed" and solver.t <= 0.5
+
+
+def test_a_run_is_not_advanced_from_within() -> None:
+    solvers: list[continuo.RK45] = []
+
+    def f(t: float, y: Any) -> list[float]:
+        for solver in solvers:
+            solver.step()
+        return [1.0]
+
+    solvers.append(continuo.RK45(f, 0, [0.0], 1))
+    with pytest.raises(RuntimeError, match="is taking a step"):
+        solvers[0].step()
+
+
+def test_a_callback_of_ctypes_that_raises_gives_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = ctypes.POINTER(ctypes.c_double)
+    raised = []
+    monkeypatch.setattr(sys, "unraisablehook", raised.append)
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_double, numbers, numbers, ctypes.c_void_p)
+    def f(t: float, y: Any, dydt: Any, user: int) -> None:
+        if t > 0.5:
+            raise ValueError("no")
+        dydt[0] = 1.0
+
+    result = solve_ivp(f, (0, 1), [0.0])
+    assert raised and not result.success and result.t[-1] <= 0.5

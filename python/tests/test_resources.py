@@ -9,9 +9,11 @@ import threading
 import time
 from typing import Any
 
+import numpy as np
 import pytest
 from compiled import address
 
+import continuo
 from continuo import Event, Interrupted, _continuo, solve_ivp
 
 
@@ -120,3 +122,24 @@ def test_a_run_that_is_left_at_exit_does_not_crash() -> None:
     """
     ended = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], timeout=30)
     assert ended.returncode == 0
+
+
+def test_one_run_in_several_threads_is_refused_not_broken() -> None:
+    solver = continuo.DOP853(_continuo.Native(address("lorenz"), size=3), 0, [1.0, 1.0, 1.0], 1e6, rtol=1e-9)
+    others: list[Exception] = []
+
+    def work() -> None:
+        for _ in range(2000):
+            try:
+                solver.step()
+            except RuntimeError:
+                pass
+            except Exception as error:
+                others.append(error)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not others and solver.status == "running" and np.all(np.isfinite(solver.y))

@@ -281,3 +281,18 @@ def test_the_time_of_an_infinite_run() -> None:
     event.terminal = True  # type: ignore[attr-defined]  # as SciPy has it
     result = solve_ivp(_decay, (0, np.inf), [1.0], events=event, rtol=1e-10, atol=1e-12)
     assert result.status == 1 and abs(result.t[-1] - 3 * np.log(2)) < 1e-9
+
+
+def test_functions_of_numba_and_methods_of_scipy() -> None:
+    class Compiled:  # what a cfunc of numba has
+        address = address("lorenz_without_user")
+        native_name = "lorenz"
+
+        class _sig:
+            args = ("double", "double*", "double*")
+
+    ends = [solve_ivp(f, (0, 1), [1.0, 1, 1]).y[:, -1] for f in (Compiled(), function("lorenz"))]
+    assert np.array_equal(ends[0], ends[1])
+    integrate = pytest.importorskip("scipy.integrate")
+    by_class = solve_ivp(_decay, (0, 1), [1.0], method=integrate.DOP853)
+    assert np.array_equal(by_class.y, solve_ivp(_decay, (0, 1), [1.0], method="DOP853").y)
