@@ -74,8 +74,9 @@ def method_of(method: Any) -> Method:
     if method is None:
         return METHODS["auto"]
     if isinstance(method, type):
-        is_scipys = method.__module__.startswith("scipy.") and method.__name__ in _SCIPY
-        method = method.__name__ if is_scipys else getattr(method, "_method", method)
+        name: str = method.__name__
+        is_scipys = method.__module__.startswith("scipy.") and name in _SCIPY
+        method = name if is_scipys else getattr(method, "_method", name)
     if isinstance(method, str):
         found = METHODS.get(method) or METHODS.get(_continuo.canonical_name(method))
         if found is not None:
