@@ -51,7 +51,6 @@ _TIGHTENED_RADAU = 0.4
 _STRICT_RTOL = 1e-6
 
 
-
 def _catalogue() -> dict[str, Method]:
     methods = {
         name: Method(name, _IMPLICIT if implicit else _COMMON, second_order)
@@ -262,49 +261,58 @@ def whole_matrix(jac: Callable[..., Any], n: int, lband: int, uband: int) -> Cal
     return whole
 
 
-def _jacobian(options: dict[str, Any], t0: float, y: Array, args: Any, extras: dict[str, Any]) -> None:
+def _band(options: dict[str, Any], n: int, keeps_sparse: bool, extras: dict[str, Any]) -> Any:
+    """Read the band of LSODA: its pattern, and `jac`, which is then packed, as one that gives whole matrices."""
+    jac = options.get("jac")
+    if options.get("lband") is None and options.get("uband") is None:
+        return jac
+    lower, upper = int(options.get("lband") or 0), int(options.get("uband") or 0)
+    if lower < 0 or upper < 0:
+        raise ValueError("`lband` and `uband` must not be negative.")
+    if keeps_sparse and options.get("jac_sparsity") is None:
+        extras["pattern"] = SparseJacobian(None, n, *_band_places(n, lower, upper)).pattern
+    return whole_matrix(jac, n, lower, upper) if callable(jac) else jac
+
+
+def _constant_jacobian(jac: Any, n: int, is_complex: bool, keeps_sparse: bool, extras: dict[str, Any]) -> None:
+    matrix = jac if _is_sparse(jac) else np.asarray(jac, dtype=complex if is_complex else float)
+    _check_shape(matrix, n, "jac")
+    if _is_sparse(matrix) and keeps_sparse:
+        coo = matrix.tocoo()
+        entries = SparseJacobian(None, n, coo.row, coo.col)
+        extras.update(pattern=entries.pattern, jac_constant=entries.entries(matrix), jac_is_values=True)
+    else:
+        dense = np.asarray(matrix.toarray() if _is_sparse(matrix) else matrix)
+        extras["jac_constant"] = _as_real(dense) if is_complex else np.ascontiguousarray(dense, dtype=float)
+
+
+def _jacobian_function(jac: Any, first: Any, n: int, more: list[Any], extras: dict[str, Any]) -> None:
+    """Read a function whose first matrix is sparse; `more` are the places of further entries that are known."""
+    coo = first.tocoo()
+    rows = np.concatenate([coo.row] + [places[0] for places in more])
+    columns = np.concatenate([coo.col] + [places[1] for places in more])
+    entries = SparseJacobian(jac, n, rows, columns)
+    extras.update(pattern=entries.pattern, jac=entries, jac_is_values=True)
+
+
+def _jacobian(options: dict[str, Any], t0: float, y: Array, args: Any, grown: Any, extras: dict[str, Any]) -> None:
     n = len(y)
     is_complex = y.dtype.kind == "c"
-    jac = options.get("jac")
-    lband, uband = options.get("lband"), options.get("uband")
+    keeps_sparse = n >= LEAST_SPARSE_SIZE and not is_complex
+    jac = _band(options, n, keeps_sparse, extras)
     sparsity = options.get("jac_sparsity")
-    if lband is not None or uband is not None:
-        lower, upper = int(lband or 0), int(uband or 0)
-        if lower < 0 or upper < 0:
-            raise ValueError("`lband` and `uband` must not be negative.")
-        if callable(jac):
-            jac = whole_matrix(jac, n, lower, upper)
-        if sparsity is None and n >= LEAST_SPARSE_SIZE:
-            rows, columns = _band_places(n, lower, upper)
-            extras["pattern"] = SparseJacobian(None, n, rows, columns).pattern
-    if sparsity is not None and jac is None and n >= LEAST_SPARSE_SIZE and not is_complex:
-        extras["pattern"] = SparseJacobian(None, n, *_places(sparsity, n)).pattern
-    elif sparsity is not None:
-        _places(sparsity, n)
+    places = None if sparsity is None else _places(sparsity, n)
+    if places is not None and jac is None and keeps_sparse:
+        extras["pattern"] = SparseJacobian(None, n, *places).pattern
     if jac is None or n == 0:
         return
     if not callable(jac):
-        matrix = jac if _is_sparse(jac) else np.asarray(jac, dtype=complex if is_complex else float)
-        _check_shape(matrix, n, "jac")
-        if _is_sparse(matrix) and n >= LEAST_SPARSE_SIZE and not is_complex:
-            coo = matrix.tocoo()
-            entries = SparseJacobian(None, n, coo.row, coo.col)
-            extras.update(pattern=entries.pattern, jac_constant=entries.entries(matrix), jac_is_values=True)
-            return
-        dense = np.asarray(matrix.toarray() if _is_sparse(matrix) else matrix)
-        extras["jac_constant"] = _as_real(dense) if is_complex else np.ascontiguousarray(dense, dtype=float)
-        return
+        return _constant_jacobian(jac, n, is_complex, keeps_sparse, extras)
     first = jac(t0, y.copy(), *(args or ()))
     if first is not None and n > 1:
         _check_shape(first if _is_sparse(first) else np.asarray(first), n, "jac")
-    if _is_sparse(first) and n >= LEAST_SPARSE_SIZE and not is_complex:
-        coo = first.tocoo()
-        rows, columns = coo.row, coo.col
-        for more in (extras.get("grown"), None if sparsity is None else _places(sparsity, n)):
-            if more is not None:
-                rows, columns = np.concatenate([rows, more[0]]), np.concatenate([columns, more[1]])
-        entries = SparseJacobian(jac, n, rows, columns)
-        extras.update(pattern=entries.pattern, jac=entries, jac_is_values=True)
+    if _is_sparse(first) and keeps_sparse:
+        _jacobian_function(jac, first, n, [one for one in (grown, places) if one is not None], extras)
     else:
         extras["jac"] = jac
 
@@ -335,6 +343,31 @@ def _choose(n: int, rtol: Any, extras: dict[str, Any]) -> str:
     return _continuo.choose_method(n, least, algebraic, "second_order" in extras, sparse, sparse)
 
 
+def _extras(
+    method: Method, options: dict[str, Any], t0: float, y: Array, args: Any, grown: Any, extras: dict[str, Any]
+) -> None:
+    """Read the options that few runs have."""
+    state = options.get("state", "auto")
+    if state not in ("auto", "array", "list"):
+        raise ValueError(f"`state` must be 'auto', 'array' or 'list', and is {state!r}")
+    extras["state"] = state
+    progress = progress_function(options.get("progress"))
+    if progress is not None:
+        extras["progress"] = progress
+    if options.get("names") is not None:
+        extras["names"] = list(options["names"])
+    if options.get("second_order"):
+        extras["second_order"] = True
+    if options.get("pairs") is not None:
+        extras["pairs"] = [(int(position), int(velocity)) for position, velocity in options["pairs"]]
+    if options.get("mass") is not None:
+        mass = _mass(options["mass"], len(y), y.dtype.kind == "c")
+        if mass is not None:
+            extras["mass"] = mass
+    if "jac" in method.options:
+        _jacobian(options, t0, y, args, grown, extras)
+
+
 def begin_run(
     fun: Any,
     t0: float,
@@ -360,27 +393,7 @@ def begin_run(
         rtol, atol = rtol * method.tightened, atol * method.tightened
     if options:
         max_step = _steps(options, t0, t1, extras)
-        state = options.get("state", "auto")
-        if state not in ("auto", "array", "list"):
-            raise ValueError(f"`state` must be 'auto', 'array' or 'list', and is {state!r}")
-        extras["state"] = state
-        progress = progress_function(options.get("progress"))
-        if progress is not None:
-            extras["progress"] = progress
-        if options.get("names") is not None:
-            extras["names"] = list(options["names"])
-        if options.get("second_order"):
-            extras["second_order"] = True
-        if options.get("pairs") is not None:
-            extras["pairs"] = [(int(position), int(velocity)) for position, velocity in options["pairs"]]
-        if options.get("mass") is not None:
-            mass = _mass(options["mass"], n, y.dtype.kind == "c")
-            if mass is not None:
-                extras["mass"] = mass
-        if "jac" in method.options:
-            if grown is not None:
-                extras["grown"] = grown
-            _jacobian(options, t0, y, args, extras)
+        _extras(method, options, t0, y, args, grown, extras)
     if events is not None:
         extras["events"] = event_fields(events)
     if vectorized:

@@ -296,3 +296,13 @@ def test_functions_of_numba_and_methods_of_scipy() -> None:
     integrate = pytest.importorskip("scipy.integrate")
     by_class = solve_ivp(_decay, (0, 1), [1.0], method=integrate.DOP853)
     assert np.array_equal(by_class.y, solve_ivp(_decay, (0, 1), [1.0], method="DOP853").y)
+
+
+def test_a_band_of_complex_components() -> None:
+    n = 25
+    matrix = np.diag(np.full(n - 1, 1j), 1) + np.diag(np.full(n, -1 + 1j)) + np.diag(np.full(n - 1, 0.5), -1)
+    y0 = np.exp(1j * np.arange(n))
+    exact = linalg.expm(matrix) @ y0
+    for options in ({"lband": 1, "uband": 1}, {"jac_sparsity": matrix != 0}, {"jac": sparse.csc_matrix(matrix)}):
+        result = solve_ivp(lambda t, y: matrix @ y, (0, 1), y0, method="BDF", rtol=1e-7, atol=1e-9, **options)
+        assert result.success and np.abs(result.y[:, -1] - exact).max() < 1e-4
