@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Sequence, Union
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Union
 
 from .command import Answer, options_of, run_command
 from .errors import Interrupted, ModelError, RunError
@@ -16,8 +13,9 @@ from .measurements import measurement_file
 from .optional import needed
 from .progress_bar import ProgressOption, in_notebook, watcher
 from .run_options import warn
+from .study_options import arguments_of, dashed, joined, told_apart
 from .study_result import FitResult, LinearModel, StudyResult
-from .values import did_you_mean
+from .sweeps import UnfinishedSweep, dataset_of, is_several, sentences_of
 
 if TYPE_CHECKING:
     from . import _continuo
@@ -27,7 +25,6 @@ Bounds = Mapping[str, Union[str, tuple[Optional[float], Optional[float]]]]
 
 _STANDARD_INPUT = "standard input"  # how the command calls the model that it is handed over
 _KINDS: dict[str, type[StudyResult]] = {"fit": FitResult, "linearize": LinearModel}
-_LISTS = ("NAMES", "STATES", "RTOL,...", "H,...")  # options whose values are separated by commas
 
 
 class Studies:
@@ -87,14 +84,14 @@ class Studies:
         StudyResult
         """
         declared = options_of(verb)
-        asked, values = _told_apart(declared, options)
+        asked, values = told_apart(declared, options)
         given = self._settings_as_options(declared, verb, values, set)
         with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
             picture = None
             if in_notebook() and "--plot" in declared and "plot" not in asked:
                 picture = Path(folder) / "picture.svg"
                 asked["plot"] = str(picture)
-            arguments = [*given, *_arguments(verb, declared, asked)]
+            arguments = [*given, *arguments_of(verb, declared, asked)]
             if "--model" in declared:
                 arguments = [*positional, "--model=-", *arguments]
             else:
@@ -211,13 +208,13 @@ class Studies:
         """
         needed("xarray", "model.sweep()")
         sentences = self._sentences_of(vary)
-        arrays = [name for name, value in options.items() if _is_several(value) and f"--{_dashed(name)}" not in
+        arrays = [name for name, value in options.items() if is_several(value) and f"--{dashed(name)}" not in
                   options_of("sweep")]  # fmt: skip
         sentences += self._sentences_of({name: options.pop(name) for name in arrays})
         options.update(until=until, method=method, tol=tol, step=step, threads=threads)
-        options.update(keep=_joined(keep, ", "), runs=None if runs is None else str(runs))
+        options.update(keep=joined(keep, ", "), runs=None if runs is None else str(runs))
         declared = options_of("sweep")
-        asked, values = _told_apart(declared, options)
+        asked, values = told_apart(declared, options)
         given, held = self._settings_of_sweep(declared, values, set)
         asked["vary"] = sentences + held
         folder = tempfile.TemporaryDirectory(prefix="continuo-")
@@ -225,7 +222,7 @@ class Studies:
         if table.suffix != ".nc":
             raise ValueError(f"out is the name of a netCDF file, such as sweep.nc, not {table.name}")
         asked["out"] = str(table)
-        arguments = ["sweep", "-", *given, *_arguments("sweep", declared, asked)]
+        arguments = ["sweep", "-", *given, *arguments_of("sweep", declared, asked)]
         return self._made_sweep(arguments, table, folder, check, progress)
 
     def _settings_of_sweep(
@@ -241,10 +238,10 @@ class Studies:
     def _sentences_of(self, vary: Any) -> list[str]:
         """What is varied, in the words of the language; a state by where it begins."""
         if not isinstance(vary, Mapping):
-            return _sentences_of(vary)
+            return sentences_of(vary)
         start = self._native.span[0] or 0.0
         settable = frozenset(self._settable())
-        return _sentences_of(
+        return sentences_of(
             {
                 name if name in settable or not self._native.states_named(name) else f"{name}({start:g})": values
                 for name, values in vary.items()
@@ -267,7 +264,7 @@ class Studies:
                 answer.json.get("done", 0), answer.json.get("runs", 0),
             )  # fmt: skip
             raise Interrupted("the sweep was interrupted; error.result.resume() makes the runs that are missing", rest)
-        data = _dataset_of(table, answer)
+        data = dataset_of(table, answer)
         if data is not None and data.attrs.get("title") == _STANDARD_INPUT:
             data.attrs["title"] = os.fsdecode(self._source_name)
         if data is not None and answer.exit == 3 and not check:
@@ -432,7 +429,7 @@ class Studies:
             ``methods``, of each ``real_axis_to``, ``imaginary_axis_to``, and ``largest`` with the ``step`` above
             which it is unstable for the ``eigenvalue``.
         """
-        return self.study("stability", (_joined(methods, ",") or "").replace(" ", ""), set=set, progress=progress, **options)
+        return self.study("stability", (joined(methods, ",") or "").replace(" ", ""), set=set, progress=progress, **options)
 
     # ---- equations --------------------------------------------------------------------------------------------------
 
@@ -707,145 +704,3 @@ def _has_good_parts(answer: Mapping[str, Any]) -> bool:
 
 def _found(check: Mapping[str, Any]) -> str:
     return f": it is {check['value']}" if "value" in check else f": {check['message']}"
-
-
-# ---- options as texts -----------------------------------------------------------------------------------------------
-
-
-def _dashed(name: str) -> str:
-    return name.rstrip("_").replace("_", "-")
-
-
-def _joined(names: Any, by: str) -> Optional[str]:
-    return names if names is None or isinstance(names, str) else by.join(str(name) for name in names)
-
-
-def _told_apart(
-    declared: Mapping[str, Mapping[str, Any]], options: Mapping[str, Any]
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Options of the verb, without those that are None; and what is left: parameters."""
-    names = {_dashed(name) for name in options}
-    own = {name for name in names if f"--{name}" in declared or f"-{name}" in declared} - {"json", "set", "help"}
-    options = {name: value for name, value in options.items() if value is not None}
-    asked = {_dashed(name): value for name, value in options.items() if _dashed(name) in own}
-    unknown = {name: value for name, value in options.items() if _dashed(name) not in own}
-    return asked, unknown
-
-
-def _arguments(verb: str, declared: Mapping[str, Mapping[str, Any]], asked: Mapping[str, Any]) -> list[str]:
-    arguments: list[str] = []
-    for name, value in asked.items():
-        long = f"--{name}" if f"--{name}" in declared else f"-{name}"
-        option = declared[long]
-        if not option["value"]:
-            if not isinstance(value, (bool, np.bool_)):
-                raise TypeError(f"{name} of {verb} is True or False, not {value!r}")
-            texts: list[Optional[str]] = [None] if value else []
-        else:
-            texts = list(_texts_of(f"{name} of {verb}", option, value))
-        for text in texts:
-            arguments += [long] if text is None else [f"{long}={text}"] if long.startswith("--") else [long, text]
-    return arguments
-
-
-def _texts_of(name: str, option: Mapping[str, Any], value: Any) -> list[str]:
-    kind = option["value"]
-    if isinstance(value, Mapping):
-        pairs = [f"{key}={_text_of(name, one)}" for key, one in value.items()]
-        if ";" in kind:
-            return [";".join(pairs)]
-        if len(pairs) > 1 and not option["repeated"]:
-            raise TypeError(f"{name} takes one name: {{{next(iter(value))!r}: ...}}")
-        return pairs
-    if "FILE" in kind and not isinstance(value, (list, tuple)):
-        return [os.path.abspath(os.fsdecode(value))]
-    if isinstance(value, str) and kind in _LISTS:
-        value = [one.strip() for one in value.split(",")]
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
-        return [_text_of(name, value)]
-    texts = [text for one in value for text in (_texts_of(name, option, one) if isinstance(one, Mapping)
-                                                else [_text_of(name, one)])]  # fmt: skip
-    if kind in _LISTS:
-        return [",".join(texts)] if texts else []
-    if not option["repeated"]:
-        raise TypeError(f"{name} takes one value, not {value!r}")
-    return texts
-
-
-def _text_of(name: str, value: Any) -> str:
-    """A number, a name, or a range."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, tuple) and len(value) == 2:
-        return "..".join("" if end is None else _text_of(name, end) for end in value)
-    if isinstance(value, (bool, np.bool_)) or np.ndim(value) != 0:
-        raise TypeError(f"{name} cannot be {value!r}")
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    try:
-        return repr(float(value))
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} cannot be {value!r}") from None
-
-
-# ---- sweeps ---------------------------------------------------------------------------------------------------------
-
-
-def _is_several(value: Any) -> bool:
-    return not isinstance(value, (str, bytes, Mapping)) and np.ndim(value) == 1
-
-
-def _sentences_of(vary: Any) -> list[str]:
-    """What is varied, in the words of the language."""
-    if vary is None:
-        return []
-    if isinstance(vary, str):
-        return [vary]
-    if not isinstance(vary, Mapping):
-        return [str(one) for one in vary]
-    return [f"{name} {_values_in_words(name, values)}" for name, values in vary.items()]
-
-
-def _values_in_words(name: str, values: Any) -> str:
-    if isinstance(values, str):
-        return values
-    if isinstance(values, tuple) and len(values) == 3 and isinstance(values[2], int):
-        low, high, count = values
-        return f"from {_text_of(name, low)} to {_text_of(name, high)} count {count}"
-    if not _is_several(values) or len(values) == 0:
-        raise TypeError(f"`{name}` is varied by an array, by (low, high, count) or by words, not by {values!r}")
-    numbers = [_text_of(name, value) for value in values]
-    if not np.isfinite(np.asarray(values, dtype=float)).all():
-        raise ValueError(f"`{name}` is varied by finite numbers")
-    return f"in ({', '.join(numbers)})"
-
-
-def _dataset_of(table: Path, answer: Answer) -> Any:
-    """The table, in memory; None where there is none."""
-    if not table.exists():
-        return None
-    engine = "scipy" if importlib.util.find_spec("scipy") else None  # scipy reads classic netCDF without netCDF4
-    with needed("xarray", "model.sweep()").open_dataset(table, engine=engine) as data:
-        loaded = data.load()
-    loaded.attrs["statistics"] = answer.json.get("kept")
-    return loaded
-
-
-class UnfinishedSweep:
-    """A sweep that was interrupted. The runs that were made are kept as long as this object is.
-
-    Attributes
-    ----------
-    done, runs : int
-        How many were made, of how many.
-    """
-
-    def __init__(self, resume: Callable[[], Any], done: int, runs: int) -> None:
-        self._resume, self.done, self.runs = resume, done, runs
-
-    def resume(self) -> Any:
-        """Makes the runs that are missing, and returns the Dataset of all."""
-        return self._resume()
-
-    def __repr__(self) -> str:
-        return f"<UnfinishedSweep: {self.done} of {self.runs} runs; resume() makes the others>"
