@@ -43,8 +43,8 @@ class Answer:
 
 
 def command_path() -> str:
-    """The program ``continuo``: that of the environment variable CONTINUO_COMMAND, else the package's own, else the one
-    in PATH.
+    """The program ``continuo``: that of the environment variable CONTINUO_COMMAND, else the package's own,
+    else the one in PATH.
 
     Raises
     ------
@@ -176,7 +176,8 @@ def _wait(out: _Reader, error: _Reader, tell: Optional[Callable[[float], object]
 
 
 def _interrupt(child: "subprocess.Popen[bytes]", out: _Reader) -> None:
-    """Ends the command, which writes what it has; where it does not end, or somebody insists, it is killed."""
+    """Ends the command, which writes what it has; where it does not end, or somebody insists, it is
+    killed."""
     try:
         child.send_signal(signal.SIGINT)
         out.join(PATIENCE)
@@ -193,5 +194,7 @@ def _answer_of(arguments: list[str], out: bytes, text: str, exit: int, was_inter
         if was_interrupted:
             return Answer({}, text, exit, True)
         how = f"was ended by signal {-exit}" if exit < 0 else f"ended with {exit}"
-        raise CommandError(f"continuo {' '.join(arguments)} {how} and gave no answer\n{text}".rstrip()) from None
+        raise CommandError(
+            f"continuo {' '.join(arguments)} {how} and gave no answer\n{text}".rstrip()
+        ) from None
     return Answer(answer, text, exit, was_interrupted or exit == 130)

@@ -16,8 +16,8 @@ class ContinuoError(Exception):
     text : str
         All that is to be said, as the command prints it: each message with its line of the model.
     messages : list of dict, optional
-        The same as data: ``code``, ``severity``, ``message``, ``label``, ``help``, ``file``, ``line``, ``column``, ...
-        (the layout of ``continuo --json``).
+        The same as data: ``code``, ``severity``, ``message``, ``label``, ``help``, ``file``, ``line``,
+        ``column``, ... (the layout of ``continuo --json``).
     result : optional
         What was computed nevertheless.
 
@@ -70,7 +70,8 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     result : object or None
-        What was computed, of the type that the function would have returned; None where there was nothing yet.
+        What was computed, of the type that the function would have returned; None where there was nothing
+        yet.
     """
 
     def __init__(self, message: str = "interrupted", result: Any = None) -> None:

@@ -31,8 +31,8 @@ class LiveClient:
         self._sending = threading.Lock()
         key = base64.b64encode(os.urandom(16)).decode()
         lines = [
-            f"GET /live?token={token} HTTP/1.1", f"Host: {parts.netloc}", "Upgrade: websocket", "Connection: Upgrade",
-            f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13",
+            f"GET /live?token={token} HTTP/1.1", f"Host: {parts.netloc}", "Upgrade: websocket",
+            "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13",
         ]  # fmt: skip
         self._socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
         head = b""
@@ -72,7 +72,8 @@ class LiveClient:
         self._send(1, json.dumps({"do": what, **parts}).encode())
 
     def hear(self) -> Optional[dict[str, Any]]:
-        """The next text, or the ``t`` of the next picture as ``{"say": "frame", "t": t}``; None at the end."""
+        """The next text, or the ``t`` of the next picture as ``{"say": "frame", "t": t}``; None at the
+        end."""
         while True:
             first, second = self._take(2)
             size = second & 127

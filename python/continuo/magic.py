@@ -12,10 +12,11 @@ _LINE = re.compile(r"\s*([^\W\d]\w*)?\s*$")
 
 
 def sim(line: str, cell: str) -> Any:
-    """Defines a model by the text of the cell: ``%%sim ball`` names it ``ball``; without a name it is ``model``.
+    """Defines a model by the text of the cell: ``%%sim ball`` names it ``ball``; without a name it is
+    ``model``.
 
-    The model shows itself as a table. An error in the text is shown as the command prints it, and the name keeps what
-    it had.
+    The model shows itself as a table. An error in the text is shown as the command prints it, and the name
+    keeps what it had.
     """
     from IPython import get_ipython
     from IPython.core.error import UsageError

@@ -37,7 +37,8 @@ _AT_START = re.compile(r"(.+)\(([^()]*)\)$")  # x(0)
 
 
 class _Setting(NamedTuple):
-    """What a name stands for: where a state begins, or a parameter or an input; its own name; the value in its unit."""
+    """What a name stands for: where a state begins, or a parameter or an input; its own name; the value in
+    its unit."""
 
     is_initial: bool
     name: str
@@ -61,18 +62,20 @@ class Model(Studies):
     Raises
     ------
     ModelError
-        The text contains an error: ``code``, ``line``, ``column``, ``hint``; its text is what the command prints.
+        The text contains an error: ``code``, ``line``, ``column``, ``hint``; its text is what the command
+        prints.
     FileNotFoundError
         There is no such file.
 
     Notes
     -----
-    Parameters are attributes: ``model.k`` is a number that knows its unit, ``model.k = 3`` sets it for the runs to
-    come, in the unit of its declaration; ``model.k = "3 N/cm"`` converts. ``del model.parameters["k"]`` gives it back
-    the value in the text. States begin elsewhere by ``model.states["x"] = 2``.
+    Parameters are attributes: ``model.k`` is a number that knows its unit, ``model.k = 3`` sets it for the
+    runs to come, in the unit of its declaration; ``model.k = "3 N/cm"`` converts. ``del
+    model.parameters["k"]`` gives it back the value in the text. States begin elsewhere by ``model.states["x"]
+    = 2``.
 
-    A model may be run by several threads at once, as long as none of them sets anything. Models can be pickled and
-    copied.
+    A model may be run by several threads at once, as long as none of them sets anything. Models can be
+    pickled and copied.
 
     Examples
     --------
@@ -125,17 +128,19 @@ class Model(Studies):
             raise ModelError(message_text or "the text is no model", data)
         warn(message_text)
         for attribute, value in {
-            "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path, "_folder": folder,
-            "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {}, "_views": weakref.WeakSet(), "_process": os.getpid(),
+            "_native": loaded, "_given": {}, "_initial": {}, "_mode": native, "_path": path,
+            "_folder": folder, "_source_name": name, "_lock": threading.Lock(), "_sized": (), "_parts": {},
+            "_views": weakref.WeakSet(), "_process": os.getpid(),
         }.items():  # fmt: skip
             object.__setattr__(self, attribute, value)
 
     def _renew_after_fork(self) -> None:
-        """In a forked process the thread that compiles is missing, and may have held a lock: the text is read again."""
+        """In a forked process the thread that compiles is missing, and may have held a lock: the text is read
+        again."""
         if self._process != os.getpid():
             self.__setstate__(self.__getstate__())
 
-    # ---- copies -----------------------------------------------------------------------------------------------------
+    # ---- copies --------------------------------------------------------------------------------------------
 
     def __getstate__(self) -> dict[str, Any]:
         return {
@@ -172,10 +177,11 @@ class Model(Studies):
         self._given.clear()
         self._initial.clear()
 
-    # ---- as a function ----------------------------------------------------------------------------------------------
+    # ---- as a function -------------------------------------------------------------------------------------
 
     def right_hand_side(self, native: str = "auto") -> RightHandSide:
-        """The function f of y' = f(t, y), with the parameters as they are now: for the solvers, or to be called.
+        """The function f of y' = f(t, y), with the parameters as they are now: for the solvers, or to be
+        called.
 
         Parameters
         ----------
@@ -190,9 +196,11 @@ class Model(Studies):
         Raises
         ------
         ModelError
-            Where the model is more than ordinary differential equations: events, modes, algebraic equations, bodies.
+            Where the model is more than ordinary differential equations: events, modes, algebraic equations,
+            bodies.
         """
-        name = self._folder / Path(os.fsdecode(self._source_name)).name  # the tables that the text names are there
+        # The tables that the text names are there.
+        name = self._folder / Path(os.fsdecode(self._source_name)).name
         try:
             f = RightHandSide(self.text, str(name), native)
             f._set_parameters(self._given)
@@ -204,7 +212,7 @@ class Model(Studies):
         """The compiled equations for the solvers: a model stands for its right-hand side."""
         return self.right_hand_side().__continuo_native__(args)
 
-    # ---- what is in it ----------------------------------------------------------------------------------------------
+    # ---- what is in it -------------------------------------------------------------------------------------
 
     @property
     def name(self) -> str:
@@ -278,7 +286,8 @@ class Model(Studies):
 
     @property
     def parameters(self) -> SettableValues:
-        """The parameters by name; each can be set for the runs to come. Those that depend on others follow these."""
+        """The parameters by name; each can be set for the runs to come. Those that depend on others follow
+        these."""
         return SettableValues("parameter", self._read_parameters, self._set, self._forget)
 
     @property
@@ -293,10 +302,11 @@ class Model(Studies):
 
     @property
     def outputs(self) -> Values:
-        """The outputs, energies and ``let`` quantities by name, with their units. Their values are those of a run."""
+        """The outputs, energies and ``let`` quantities by name, with their units. Their values are those of a
+        run."""
         return Values("output", self._read_outputs)
 
-    # ---- parameters as attributes -----------------------------------------------------------------------------------
+    # ---- parameters as attributes --------------------------------------------------------------------------
 
     def __getattr__(self, name: str) -> Value:
         if not name.startswith("_"):
@@ -310,7 +320,8 @@ class Model(Studies):
         if not is_own and name in self._settable():
             self._set(name, value)
         elif is_own:
-            hint = f"; the parameter of this name is model.parameters[{name!r}]" if name in self._settable() else ""
+            is_parameter = name in self._settable()
+            hint = f"; the parameter of this name is model.parameters[{name!r}]" if is_parameter else ""
             raise AttributeError(f"`{name}` of a Model cannot be replaced{hint}", name=name, obj=self)
         else:
             raise AttributeError(self._no_attribute(name), name=name, obj=self)
@@ -331,7 +342,7 @@ class Model(Studies):
         hint = f"did you mean `{near[0]}`?" if near else did_you_mean(name, self._settable())
         return f"the model has no parameter `{name}`; {hint}".rstrip("; ")
 
-    # ---- settings ---------------------------------------------------------------------------------------------------
+    # ---- settings ------------------------------------------------------------------------------------------
 
     def _set(self, name: str, value: Any) -> None:
         setting = self._resolved(name, value, self._present())
@@ -344,7 +355,9 @@ class Model(Studies):
         self._given.pop(name, None)
         self._initial.pop(name, None)
 
-    def _resolved(self, name: str, value: Any, native: _continuo.Model, options: Iterable[str] = ()) -> _Setting:
+    def _resolved(
+        self, name: str, value: Any, native: _continuo.Model, options: Iterable[str] = ()
+    ) -> _Setting:
         """What a name stands for. `options`: names that may have been meant besides."""
         parameters: dict[str, Any] = {one[0]: one for one in self._part("parameters", native)}
         if name in parameters:
@@ -369,7 +382,9 @@ class Model(Studies):
             given = number_or_text(name, value)
             return _Setting(True, state, read_setting(native.read_initial, state, given))
         names = [*parameters, *inputs, *(one[0] for one in self._part("states", native)[:1000]), *options]
-        raise ModelError(f"the model has no parameter, input or state `{name}`; {did_you_mean(name, names)}".rstrip("; "))
+        raise ModelError(
+            f"the model has no parameter, input or state `{name}`; {did_you_mean(name, names)}".rstrip("; ")
+        )
 
     def _check_start(self, name: str, time: str) -> None:
         start = self._native.span[0] or 0.0
@@ -424,7 +439,7 @@ class Model(Studies):
             object.__setattr__(self, "_structural", names)
         return frozenset(self.__dict__["_structural"])
 
-    # ---- runs -------------------------------------------------------------------------------------------------------
+    # ---- runs ----------------------------------------------------------------------------------------------
 
     def run(
         self,
@@ -469,14 +484,14 @@ class Model(Studies):
         estimate_error : bool
             Whether a second, stricter run estimates the true error (``run.error``).
         check : bool
-            Whether a run that does not reach its end raises RunError. With False it is returned, and its ``outcome``
-            is false.
+            Whether a run that does not reach its end raises RunError. With False it is returned, and its
+            ``outcome`` is false.
         progress : callable, bool or None
-            Called with the time and the part that is done, ``progress(t, part)``, ten times a second; True shows a
-            bar, False none; None shows one where somebody watches. What it raises ends the run.
+            Called with the time and the part that is done, ``progress(t, part)``, ten times a second; True
+            shows a bar, False none; None shows one where somebody watches. What it raises ends the run.
         **values
-            Parameters, inputs without a file, and initial values of states by name: ``g=1.62``. Numbers are in the
-            unit of the declaration; texts such as ``"3 km/h"`` are converted.
+            Parameters, inputs without a file, and initial values of states by name: ``g=1.62``. Numbers are
+            in the unit of the declaration; texts such as ``"3 km/h"`` are converted.
 
         Returns
         -------
@@ -487,8 +502,8 @@ class Model(Studies):
         ModelError
             What is asked does not fit the model.
         RunError
-            The run did not reach its end. ``error.run`` has its rows until then, ``str(error)`` the reason and a
-            remedy.
+            The run did not reach its end. ``error.run`` has its rows until then, ``str(error)`` the reason
+            and a remedy.
         Interrupted
             Ctrl-C ended the run at once (a KeyboardInterrupt); ``error.run`` has its rows until then.
 
@@ -505,7 +520,9 @@ class Model(Studies):
         if method is not None:
             asked["method"] = text_option("method", method)
         if output is not None:
-            asked["output_steps" if output == "steps" else "output"] = output == "steps" or number("output", output)
+            asked["output_steps" if output == "steps" else "output"] = output == "steps" or number(
+                "output", output
+            )
         if max_steps is not None:
             asked["max_steps"] = count_option("max_steps", max_steps)
         if estimate_error:
@@ -526,7 +543,7 @@ class Model(Studies):
         if raised is not None:
             if not isinstance(raised, KeyboardInterrupt):
                 raise raised
-            where = f" at t = {run.t[-1]:g}; its rows until then are in .run" if run is not None and len(run) else ""
+            where = f" at t = {run.t[-1]:g}; its rows until then are in .run" if run else ""
             raise Interrupted(f"the run was interrupted{where}", run) from None
         if run is None:
             asked_wrongly = any(message["code"].startswith(("E32", "E33", "E34")) for message in data)
@@ -539,20 +556,23 @@ class Model(Studies):
         return run
 
     def _warn_of_shadowed(self, values: Mapping[str, Any]) -> None:
-        """A parameter may be called like an option, which then gets the value: that is said, not passed over."""
+        """A parameter may be called like an option, which then gets the value: that is said, not passed
+        over."""
         if "_shadowed" not in self.__dict__:
             names = frozenset(name for name in self._settable() if name in _RUN_OPTIONS)
             object.__setattr__(self, "_shadowed", names)
         for name in self.__dict__["_shadowed"]:
-            warn(f'`{name}` is an option of run(); the parameter of this name is set by set={{"{name}": ...}}')
+            warn(
+                f'`{name}` is an option of run(); the parameter of this name is set by set={{"{name}": ...}}'
+            )
 
-    # ---- notebooks --------------------------------------------------------------------------------------------------
+    # ---- notebooks -----------------------------------------------------------------------------------------
 
     def view(self, *, width: Union[int, str] = "100%", height: int = 640, timeout: float = 30.0) -> View:
         """The live view: the motion as a drawing with sliders, in the notebook or in the browser.
 
-        A slider moved there changes this model: ``model.k`` follows. ``model.k = 3`` here moves the slider there.
-        The view ends with ``view.close()``, or with Python.
+        A slider moved there changes this model: ``model.k`` follows. ``model.k = 3`` here moves the slider
+        there. The view ends with ``view.close()``, or with Python.
 
         Parameters
         ----------

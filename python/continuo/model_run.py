@@ -26,8 +26,9 @@ MOST_SHOWN = 8  # values in a notebook's table
 class Outcome:
     """How a run ended. It is true where the run came to its end, or an event stopped it as the model says.
 
-    ``str(outcome)`` is one sentence. ``t`` and ``h`` are the time and the step of the last attempt, ``error`` its
-    estimate in units of the tolerance, ``component`` the worst of it; ``limit_time`` is that of accumulating events.
+    ``str(outcome)`` is one sentence. ``t`` and ``h`` are the time and the step of the last attempt, ``error``
+    its estimate in units of the tolerance, ``component`` the worst of it; ``limit_time`` is that of
+    accumulating events.
     """
 
     ending: str
@@ -77,8 +78,8 @@ class Check:
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """The sum of the energies at the start and at the end; ``drift`` is the largest difference from the start, as a
-    part of that where ``relative``, else in ``unit``."""
+    """The sum of the energies at the start and at the end; ``drift`` is the largest difference from the
+    start, as a part of that where ``relative``, else in ``unit``."""
 
     first: float
     last: float
@@ -91,7 +92,8 @@ class EnergyBalance:
 class ErrorEstimate:
     """The true error of the states by a second, stricter run: at the end, and the largest of all rows.
 
-    Both arrays have one number per state; they are empty where there is no estimate, and ``message`` says why.
+    Both arrays have one number per state; they are empty where there is no estimate, and ``message`` says
+    why.
     """
 
     at_end: Array
@@ -102,8 +104,9 @@ class ErrorEstimate:
 class Run:
     """What a run of a model leaves.
 
-    Rows are those that the model's ``run`` statement asks for. An event that changes the state stands as two rows of
-    equal time, before and after it. Arrays are views of the rows and cannot be written into; copy them to change them.
+    Rows are those that the model's ``run`` statement asks for. An event that changes the state stands as two
+    rows of equal time, before and after it. Arrays are views of the rows and cannot be written into; copy
+    them to change them.
 
     Attributes
     ----------
@@ -120,8 +123,8 @@ class Run:
     """
 
     _PARTS = (
-        "table", "columns", "states", "total_energy", "energy_unit", "events", "outcome", "statistics", "checks",
-        "energy", "plan", "lets", "plots", "layout", "error_estimate", "manifest",
+        "table", "columns", "states", "total_energy", "energy_unit", "events", "outcome", "statistics",
+        "checks", "energy", "plan", "lets", "plots", "layout", "error_estimate", "manifest",
     )  # fmt: skip
 
     def __init__(
@@ -133,7 +136,7 @@ class Run:
         self.as_written = as_written
         self.messages = list(messages or [])
 
-    # ---- what C++ knows, asked for once -----------------------------------------------------------------------------
+    # ---- what C++ knows, asked for once --------------------------------------------------------------------
 
     def _part(self, name: str) -> Any:
         if name not in self._known:
@@ -148,7 +151,7 @@ class Run:
         state["_native"] = None
         return state
 
-    # ---- rows -------------------------------------------------------------------------------------------------------
+    # ---- rows ----------------------------------------------------------------------------------------------
 
     @property
     def table(self) -> Array:
@@ -190,8 +193,9 @@ class Run:
         Parameters
         ----------
         name : str
-            A state (``"h'"``), an output, an energy or a ``let`` of the model; ``"energy"`` for the sum of the
-            energies; a family (``"u"``, of u[1], u[2], ...); of a world ``"position"``, ``"velocity"``, ...
+            A state (``"h'"``), an output, an energy or a ``let`` of the model; ``"energy"`` for the sum of
+            the energies; a family (``"u"``, of u[1], u[2], ...); of a world ``"position"``, ``"velocity"``,
+            ...
 
         Returns
         -------
@@ -222,7 +226,9 @@ class Run:
     def keys(self) -> list[str]:
         """All names that ``run[...]`` knows."""
         families = [variable for variable, _, _, (places, _) in self._part("layout")[2] if places is not None]
-        return list(dict.fromkeys(self.columns + [n for n in families if n != "time"] + list(self._part("lets"))))
+        return list(
+            dict.fromkeys(self.columns + [n for n in families if n != "time"] + list(self._part("lets")))
+        )
 
     def _ipython_key_completions_(self) -> list[str]:
         return self.keys()
@@ -247,8 +253,8 @@ class Run:
     def data(self) -> Any:
         """The rows as an ``xarray.Dataset``, laid out as the netCDF file of ``continuo run -o``.
 
-        The dimension is ``time``, in which the instant of an event stands twice, before and after it. Families and
-        the bodies of a world are arrays; units and long names are attributes.
+        The dimension is ``time``, in which the instant of an event stands twice, before and after it.
+        Families and the bodies of a world are arrays; units and long names are attributes.
         """
         xarray = needed("xarray", "run.data")
         attributes, _, variables = self._part("layout")
@@ -264,16 +270,19 @@ class Run:
     def to_pandas(self) -> Any:
         """The rows as a ``pandas.DataFrame`` over t; its ``attrs["units"]`` has the units."""
         pandas = needed("pandas", "run.to_pandas()")
-        frame = pandas.DataFrame(self.table[:, 1:], index=pandas.Index(self.t, name="t"), columns=self.columns[1:])
+        frame = pandas.DataFrame(
+            self.table[:, 1:], index=pandas.Index(self.t, name="t"), columns=self.columns[1:]
+        )
         frame.attrs["units"] = self.units
         return frame
 
-    # ---- events -----------------------------------------------------------------------------------------------------
+    # ---- events --------------------------------------------------------------------------------------------
 
     @property
     def events(self) -> Any:
-        """The events as a ``pandas.DataFrame``, a row for each: ``t``, ``event`` (as the model writes it), ``mark``
-        where some have one, ``impulse`` where bodies met, then ``before x`` and ``after x`` of each state."""
+        """The events as a ``pandas.DataFrame``, a row for each: ``t``, ``event`` (as the model writes it),
+        ``mark`` where some have one, ``impulse`` where bodies met, then ``before x`` and ``after x`` of each
+        state."""
         pandas = needed("pandas", "run.events")
         names, marks, times, impulses, with_states, before, after = self._part("events")
         columns: dict[str, Any] = {"t": times, "event": names}
@@ -295,7 +304,7 @@ class Run:
         chosen = [i for i in range(len(names)) if names[i].startswith(event) or marks[i].startswith(event)]
         return np.asarray(times)[chosen]
 
-    # ---- how it went ------------------------------------------------------------------------------------------------
+    # ---- how it went ---------------------------------------------------------------------------------------
 
     @property
     def outcome(self) -> Outcome:
@@ -309,7 +318,8 @@ class Run:
 
     @property
     def checks(self) -> list[Check]:
-        """The verdicts on the model's checks. They are meant for the model as it is written (``as_written``)."""
+        """The verdicts on the model's checks. They are meant for the model as it is written
+        (``as_written``)."""
         return [Check(**check) for check in self._part("checks")]
 
     @property
@@ -352,7 +362,7 @@ class Run:
             self._known["summary"] = self._native.summary(self.as_written)
         return str(self._known["summary"])
 
-    # ---- pictures ---------------------------------------------------------------------------------------------------
+    # ---- pictures ------------------------------------------------------------------------------------------
 
     def _series(self, name: str) -> Series:
         unit = self.units.get(name, "")
@@ -360,7 +370,9 @@ class Run:
             unit = self._part("energy_unit")
         values = self[name]
         if values.ndim > 1:
-            raise ValueError(f"`{name}` has the shape {values.shape}: plot its members, or run.data[\"{name}\"].plot()")
+            raise ValueError(
+                f"`{name}` has the shape {values.shape}: plot its members, or run.data[\"{name}\"].plot()"
+            )
         return Series(name, unit, values)
 
     def panels(self, *names: str, against: Optional[str] = None) -> list[Panel]:
@@ -380,11 +392,13 @@ class Run:
         Parameters
         ----------
         *names : str
-            What to draw, as for ``run[...]``; without any what the model's ``plot`` statements say, else its states.
+            What to draw, as for ``run[...]``; without any what the model's ``plot`` statements say, else its
+            states.
         against : str, optional
             What stands at the horizontal axis; t without it.
         ax : matplotlib.axes.Axes, optional
-            Where to draw; all curves then share it. Without it each unit has axes of its own, one below the other.
+            Where to draw; all curves then share it. Without it each unit has axes of its own, one below the
+            other.
         events : bool
             Whether a thin line marks the time of each event.
         **style
@@ -398,7 +412,9 @@ class Run:
         panels = self.panels(*names, against=against)
         if ax is None:
             height = max(2.4 * len(panels), 3.2)
-            _, axes = pyplot.subplots(len(panels), 1, squeeze=False, figsize=(6.4, height), layout="constrained")
+            _, axes = pyplot.subplots(
+                len(panels), 1, squeeze=False, figsize=(6.4, height), layout="constrained"
+            )
             all_axes = list(axes[:, 0])
         else:
             all_axes = [ax] * len(panels)
@@ -432,7 +448,8 @@ class Run:
         events = len(self._part("events")[0])
         note = f"{len(self)} rows{more}, {events} events, {self.method}, {self.statistics['steps']} steps"
         if self.energy is not None:
-            note += f", energy drift {self.energy.drift:.3g}{'' if self.energy.relative else ' ' + self.energy.unit}"
+            unit = "" if self.energy.relative else " " + self.energy.unit
+            note += f", energy drift {self.energy.drift:.3g}{unit}"
         parts.append(f"<div>{html.escape(note)}</div>")
         parts.append(table_html(["at the end", "value", "unit"], rows))
         if len(self) > 1:

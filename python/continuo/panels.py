@@ -93,7 +93,9 @@ def _thinned(x: Array, y: Array, most: int) -> tuple[Array, Array]:
     size = x.size // most
     pieces = np.nan_to_num(y[: size * most].reshape(most, size))
     first = np.arange(most) * size
-    places = np.sort(np.concatenate([first + pieces.argmin(axis=1), first + pieces.argmax(axis=1), [x.size - 1]]))
+    places = np.sort(
+        np.concatenate([first + pieces.argmin(axis=1), first + pieces.argmax(axis=1), [x.size - 1]])
+    )
     return x[places], y[places]
 
 
@@ -106,8 +108,8 @@ def _panel(panel: Panel, width: int, height: int, top: int) -> str:
     y_scale = (height - above - below - 2 * air) / (y_high - y_low)
     bottom = top + height - below
     parts = [
-        f'<rect x="{left}" y="{top + above}" width="{width - left - right}" height="{height - above - below}" '
-        'fill="none" stroke="#999"/>'
+        f'<rect x="{left}" y="{top + above}" width="{width - left - right}" '
+        f'height="{height - above - below}" fill="none" stroke="#999"/>'
     ]
     for i, curve in enumerate(curves):
         x, y = _thinned(panel.against.values, curve.values, width)

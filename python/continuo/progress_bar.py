@@ -68,7 +68,9 @@ class ProgressBar:
 
     def _show(self, part: float, text: str) -> None:
         if in_notebook():
-            bar = _html(f'<progress value="{part:.4f}" max="1" style="width:20em"></progress> {self._what} {text}')
+            bar = _html(
+                f'<progress value="{part:.4f}" max="1" style="width:20em"></progress> {self._what} {text}'
+            )
             if self._display is None:
                 from IPython.display import display
 
@@ -88,8 +90,11 @@ def _html(text: str) -> Any:
     return HTML(text)
 
 
-def watcher(progress: ProgressOption, what: str) -> tuple[Optional[Callable[..., object]], Callable[[], None]]:
-    """What is to be called with the part that is done as its last argument, or None; what is to be called at the end.
+def watcher(
+    progress: ProgressOption, what: str
+) -> tuple[Optional[Callable[..., object]], Callable[[], None]]:
+    """What is to be called with the part that is done as its last argument, or None; what is to be called at
+    the end.
 
     Parameters
     ----------
@@ -109,7 +114,8 @@ def watcher(progress: ProgressOption, what: str) -> tuple[Optional[Callable[...,
 
 
 def progress_function(progress: object) -> Optional[Callable[[float, float], object]]:
-    """What a run of solve_ivp calls with t and the part that is done: the user's function, or a bar for True."""
+    """What a run of solve_ivp calls with t and the part that is done: the user's function, or a bar for
+    True."""
     if progress is None or progress is False:
         return None
     if progress is True:

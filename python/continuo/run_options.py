@@ -1,4 +1,5 @@
-"""What stands behind the keywords of a run: numbers, texts with units, tolerances; and the warnings of the library."""
+"""What stands behind the keywords of a run: numbers, texts with units, tolerances; and the warnings of the
+library."""
 
 from __future__ import annotations
 

@@ -30,14 +30,14 @@ _KINDS: dict[str, type[StudyResult]] = {"fit": FitResult, "linearize": LinearMod
 class Studies:
     """What can be studied of a model, by the command ``continuo`` (see ``continuo.command.command_path``).
 
-    Every study takes the model as it stands: its text, and the parameters that were set. Keywords that are no options
-    of the study are parameters: ``model.steady(k=3)``. All options of a verb can be given by their names on the
-    command line, with ``_`` for ``-``: ``model.fit(data, one_deviation=True)``; ``None`` leaves an option out. A list
-    stands for names or numbers separated by commas, a tuple of two numbers for a range, a mapping for ``NAME=VALUE``:
-    ``along={"k": (1, 5)}``.
+    Every study takes the model as it stands: its text, and the parameters that were set. Keywords that are no
+    options of the study are parameters: ``model.steady(k=3)``. All options of a verb can be given by their
+    names on the command line, with ``_`` for ``-``: ``model.fit(data, one_deviation=True)``; ``None`` leaves
+    an option out. A list stands for names or numbers separated by commas, a tuple of two numbers for a range,
+    a mapping for ``NAME=VALUE``: ``along={"k": (1, 5)}``.
 
-    Studies raise ModelError and RunError as runs do, and Interrupted after Ctrl-C, with ``result`` where there was
-    one. They show how far they are where somebody watches (``progress=False``: never).
+    Studies raise ModelError and RunError as runs do, and Interrupted after Ctrl-C, with ``result`` where
+    there was one. They show how far they are where somebody watches (``progress=False``: never).
     """
 
     if TYPE_CHECKING:
@@ -47,14 +47,17 @@ class Studies:
         _initial: dict[str, float]
 
         def _resolved_all(
-            self, values: Mapping[str, Any], more: Optional[Mapping[str, Any]] = None, options: Iterable[str] = ()
+            self,
+            values: Mapping[str, Any],
+            more: Optional[Mapping[str, Any]] = None,
+            options: Iterable[str] = (),
         ) -> tuple[dict[str, float], dict[str, float]]: ...
 
         def _part(self, name: str, native: Optional[_continuo.Model] = None) -> Any: ...
 
         def _settable(self) -> list[str]: ...
 
-    # ---- the mechanism ----------------------------------------------------------------------------------------------
+    # ---- the mechanism -------------------------------------------------------------------------------------
 
     def study(
         self,
@@ -75,7 +78,8 @@ class Studies:
         set : mapping, optional
             Parameters by names that are no keywords of Python.
         progress : callable, bool or None
-            Called with the part that is done, 0 to 1; True shows a bar, None shows one where somebody watches.
+            Called with the part that is done, 0 to 1; True shows a bar, None shows one where somebody
+            watches.
         **options
             Options of the verb, and parameters of the model.
 
@@ -101,20 +105,30 @@ class Studies:
         return self._result(verb, answer, svg)
 
     def _settings_as_options(
-        self, declared: Mapping[str, Any], verb: str, values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
+        self,
+        declared: Mapping[str, Any],
+        verb: str,
+        values: Mapping[str, Any],
+        more: Optional[Mapping[str, Any]],
     ) -> list[str]:
         """The parameters that are set, these, and initial values, as options."""
         options = [name.strip("-").replace("-", "_") for name in declared]
         given, initial = self._resolved_all(values, more, options)
         inputs = [one[0] for one in self._part("inputs") if one[0] in given]
         if inputs:
-            raise ModelError(f"`{verb}` takes inputs as the text has them; write the value of `{inputs[0]}` there")
+            raise ModelError(
+                f"`{verb}` takes inputs as the text has them; write the value of `{inputs[0]}` there"
+            )
         takes_initial = declared.get("--initial", {}).get("value") == "NAME=VALUE"
         if initial and not takes_initial:
             name = next(iter(initial))
-            raise ModelError(f"`{verb}` begins where the text says; write `{name}(0) = {initial[name]:g}` there")
+            raise ModelError(
+                f"`{verb}` begins where the text says; write `{name}(0) = {initial[name]:g}` there"
+            )
         if given and "--set" not in declared:
-            raise ModelError(f"`{verb}` takes parameters as the text has them; model.reset() gives these back")
+            raise ModelError(
+                f"`{verb}` takes parameters as the text has them; model.reset() gives these back"
+            )
         return [f"--set={name}={value!r}" for name, value in given.items()] + [
             f"--initial={name}={value!r}" for name, value in initial.items()
         ]
@@ -141,7 +155,7 @@ class Studies:
         if result is None:
             raise (RunError if answer.exit == 3 else ModelError)(text, answer.messages)
         if not answer.messages:
-            text = ""  # what else stands on standard error, of whoever starts the command, is not about the model
+            text = ""  # what else stands on standard error is of whoever starts the command, not of the model
         text = text or "\n".join(_problems_in(answer.json))
         # Of several methods one may not suit the model: what the others gave is a result.
         if answer.exit == 3 or (answer.exit == 1 and not _has_good_parts(answer.json)):
@@ -150,7 +164,7 @@ class Studies:
         warn(text)
         return result
 
-    # ---- many runs --------------------------------------------------------------------------------------------------
+    # ---- many runs -----------------------------------------------------------------------------------------
 
     def sweep(
         self,
@@ -174,12 +188,13 @@ class Studies:
         Parameters
         ----------
         vary : mapping or str or list of str, optional
-            What is varied, beside what the text's ``sweep`` says. A mapping from names to arrays or lists of values,
-            to ``(low, high, count)``, or to words such as ``"normal(0.5, 0.1)"``; or whole sentences, such as
-            ``"k from 1 to 10 count 50"``. Parameters, inputs and initial values of states that are varied by arrays may
-            be keywords: ``k=[1, 2, 5]``.
+            What is varied, beside what the text's ``sweep`` says. A mapping from names to arrays or lists of
+            values, to ``(low, high, count)``, or to words such as ``"normal(0.5, 0.1)"``; or whole sentences,
+            such as ``"k from 1 to 10 count 50"``. Parameters, inputs and initial values of states that are
+            varied by arrays may be keywords: ``k=[1, 2, 5]``.
         runs : str or int, optional
-            How many: ``"10000 sobol seed 7"``; without it every combination of the values, or what the text says.
+            How many: ``"10000 sobol seed 7"``; without it every combination of the values, or what the text
+            says.
         keep : str or list of str, optional
             What is kept of each run: ``"x at end, max(abs(x)) as peak"``.
         until, method, tol, step
@@ -190,14 +205,14 @@ class Studies:
             Where the netCDF file (.nc) stays; without it there is none. With ``resume=True`` a sweep that was
             interrupted goes on there.
         check : bool
-            Whether it is an error where runs did not reach their end. With False they are rows like the others,
-            without values; ``outcome`` tells them.
+            Whether it is an error where runs did not reach their end. With False they are rows like the
+            others, without values; ``outcome`` tells them.
 
         Returns
         -------
         xarray.Dataset
-            Dimension ``run``, and those of series; what was varied is a coordinate; ``attrs["statistics"]`` has the
-            mean, deviation and quantiles of what was kept, as in the JSON of the command.
+            Dimension ``run``, and those of series; what was varied is a coordinate; ``attrs["statistics"]``
+            has the mean, deviation and quantiles of what was kept, as in the JSON of the command.
 
         Raises
         ------
@@ -229,7 +244,9 @@ class Studies:
         self, declared: Mapping[str, Any], values: Mapping[str, Any], more: Optional[Mapping[str, Any]]
     ) -> tuple[list[str], list[str]]:
         """Parameters as options; inputs and initial values as what is varied over one value."""
-        given, initial = self._resolved_all(values, more, [name.strip("-").replace("-", "_") for name in declared])
+        given, initial = self._resolved_all(
+            values, more, [name.strip("-").replace("-", "_") for name in declared]
+        )
         inputs = frozenset(one[0] for one in self._part("inputs"))
         settings = [f"--set={name}={value!r}" for name, value in given.items() if name not in inputs]
         held = {name: [value] for name, value in given.items() if name in inputs}
@@ -241,12 +258,11 @@ class Studies:
             return sentences_of(vary)
         start = self._native.span[0] or 0.0
         settable = frozenset(self._settable())
-        return sentences_of(
-            {
-                name if name in settable or not self._native.states_named(name) else f"{name}({start:g})": values
-                for name, values in vary.items()
-            }
-        )
+
+        def begins(name: str) -> bool:
+            return name not in settable and bool(self._native.states_named(name))
+
+        return sentences_of({f"{name}({start:g})" if begins(name) else name: vary[name] for name in vary})
 
     def _made_sweep(
         self,
@@ -263,7 +279,9 @@ class Studies:
                 lambda: self._made_sweep(again, table, folder, check, progress),
                 answer.json.get("done", 0), answer.json.get("runs", 0),
             )  # fmt: skip
-            raise Interrupted("the sweep was interrupted; error.result.resume() makes the runs that are missing", rest)
+            raise Interrupted(
+                "the sweep was interrupted; error.result.resume() makes the runs that are missing", rest
+            )
         data = dataset_of(table, answer)
         if data is not None and data.attrs.get("title") == _STANDARD_INPUT:
             data.attrs["title"] = os.fsdecode(self._source_name)
@@ -299,8 +317,8 @@ class Studies:
         Parameters
         ----------
         *data : DataFrame, Dataset, mapping of arrays, or path
-            Measurements: a column ``t`` (or the index or coordinate of this name), and columns named like states or
-            outputs. NaN stands for what was not measured. Several are several experiments.
+            Measurements: a column ``t`` (or the index or coordinate of this name), and columns named like
+            states or outputs. NaN stands for what was not measured. Several are several experiments.
         param : str or list of str, optional
             The unknown parameters.
         initial : str or list of str, optional
@@ -331,7 +349,9 @@ class Studies:
         """
         if not data:
             raise TypeError("fit takes measurements: model.fit(data, param=[\"k\"])")
-        options.update(param=param, initial=initial, bounds=bounds, sigma=sigma, log=log, prior=prior, loss=loss)
+        options.update(
+            param=param, initial=initial, bounds=bounds, sigma=sigma, log=log, prior=prior, loss=loss
+        )
         options.update(column=column, starts=starts, profile=profile, tol=tol)
         with tempfile.TemporaryDirectory(prefix="continuo-") as folder:
             files = [measurement_file(one, Path(folder) / f"data{i + 1}.csv") for i, one in enumerate(data)]
@@ -348,7 +368,7 @@ class Studies:
 
         def _set(self, name: str, value: Any) -> None: ...
 
-    # ---- methods ----------------------------------------------------------------------------------------------------
+    # ---- methods -------------------------------------------------------------------------------------------
 
     def converge(
         self,
@@ -377,8 +397,8 @@ class Studies:
         Returns
         -------
         StudyResult
-            ``methods``, of each its ``method``, ``nominal_order``, the measured ``order`` in ``global``, ``local`` and
-            ``energy``, and ``points`` (``step``, and the errors there).
+            ``methods``, of each its ``method``, ``nominal_order``, the measured ``order`` in ``global``,
+            ``local`` and ``energy``, and ``points`` (``step``, and the errors there).
         """
         options.update(methods=methods, most_steps=most_steps, tol=tol, until=until)
         return self.study("converge", set=set, progress=progress, **options)
@@ -414,7 +434,12 @@ class Studies:
         return self.study("compare", set=set, progress=progress, **options)
 
     def stability(
-        self, methods: Names, *, set: Optional[Mapping[str, Any]] = None, progress: ProgressOption = None, **options: Any
+        self,
+        methods: Names,
+        *,
+        set: Optional[Mapping[str, Any]] = None,
+        progress: ProgressOption = None,
+        **options: Any,
     ) -> StudyResult:
         """The regions of stability of methods, and the largest stable step for this model.
 
@@ -426,12 +451,14 @@ class Studies:
         Returns
         -------
         StudyResult
-            ``methods``, of each ``real_axis_to``, ``imaginary_axis_to``, and ``largest`` with the ``step`` above
-            which it is unstable for the ``eigenvalue``.
+            ``methods``, of each ``real_axis_to``, ``imaginary_axis_to``, and ``largest`` with the ``step``
+            above which it is unstable for the ``eigenvalue``.
         """
-        return self.study("stability", (joined(methods, ",") or "").replace(" ", ""), set=set, progress=progress, **options)
+        return self.study(
+            "stability", (joined(methods, ",") or "").replace(" ", ""), set=set, progress=progress, **options
+        )
 
-    # ---- equations --------------------------------------------------------------------------------------------------
+    # ---- equations -----------------------------------------------------------------------------------------
 
     def steady(
         self,
@@ -455,13 +482,14 @@ class Studies:
         starts : int, optional
             How many points the search starts from.
         along : mapping, optional
-            A parameter along which each equilibrium is followed: ``{"k": (1, 5)}``. ``and_`` names a second one.
+            A parameter along which each equilibrium is followed: ``{"k": (1, 5)}``. ``and_`` names a second
+            one.
 
         Returns
         -------
         StudyResult
-            ``equilibria``, of each ``x`` in the order of ``states``, ``eigenvalues``, ``stability``; with ``along``
-            the branches.
+            ``equilibria``, of each ``x`` in the order of ``states``, ``eigenvalues``, ``stability``; with
+            ``along`` the branches.
         """
         options.update(mode=mode, box=box, starts=starts, along=along)
         return self.study("steady", set=set, progress=progress, **options)
@@ -529,12 +557,13 @@ class Studies:
         Returns
         -------
         StudyResult
-            ``by`` (names), ``states``; ``rows.t`` has shape (n,), ``rows.x`` (n, states), ``rows.by`` (n, by, states).
+            ``by`` (names), ``states``; ``rows.t`` has shape (n,), ``rows.x`` (n, states), ``rows.by`` (n, by,
+            states).
         """
         options.update(param=param, initial=initial, of=of, until=until, output=output, tol=tol)
         return self.study("sense", set=set, progress=progress, **options)
 
-    # ---- long motions -----------------------------------------------------------------------------------------------
+    # ---- long motions --------------------------------------------------------------------------------------
 
     def orbit(
         self,
@@ -560,7 +589,8 @@ class Studies:
         Returns
         -------
         StudyResult
-            ``period``, ``x`` (a point of it), ``min``, ``max``, ``multipliers``, ``stable``; with ``along`` branches.
+            ``period``, ``x`` (a point of it), ``min``, ``max``, ``multipliers``, ``stable``; with ``along``
+            branches.
         """
         options.update(period=period, settle=settle, along=along)
         return self.study("orbit", set=set, progress=progress, **options)
@@ -687,7 +717,9 @@ class Studies:
         """
         studies = [with_] if isinstance(with_, str) else list(with_)
         arguments = ["report", "-", f"--out={os.path.abspath(os.fsdecode(out))}"]
-        return self._result("report", self._answer(arguments + [f"--with={one}" for one in studies], progress))
+        return self._result(
+            "report", self._answer(arguments + [f"--with={one}" for one in studies], progress)
+        )
 
 
 def _problems_in(answer: Any) -> list[str]:

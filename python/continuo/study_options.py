@@ -23,7 +23,9 @@ def told_apart(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of the verb, without those that are None; and what is left: parameters."""
     names = {dashed(name) for name in options}
-    own = {name for name in names if f"--{name}" in declared or f"-{name}" in declared} - {"json", "set", "help"}
+    own = {name for name in names if f"--{name}" in declared or f"-{name}" in declared} - {
+        "json", "set", "help"
+    }
     options = {name: value for name, value in options.items() if value is not None}
     asked = {dashed(name): value for name, value in options.items() if dashed(name) in own}
     unknown = {name: value for name, value in options.items() if dashed(name) not in own}
@@ -42,7 +44,9 @@ def arguments_of(verb: str, declared: Mapping[str, Mapping[str, Any]], asked: Ma
         else:
             texts = list(_texts_of(f"{name} of {verb}", option, value))
         for text in texts:
-            arguments += [long] if text is None else [f"{long}={text}"] if long.startswith("--") else [long, text]
+            arguments += [long] if text is None else [
+                f"{long}={text}"
+            ] if long.startswith("--") else [long, text]
     return arguments
 
 

@@ -18,7 +18,8 @@ _OF_COMMAND = ("layout", "exit", "messages")
 
 
 def converted(key: str, value: Any) -> Any:
-    """Lists of numbers as arrays, in which what is not finite or not known is NaN; objects with attributes."""
+    """Lists of numbers as arrays, in which what is not finite or not known is NaN; objects with
+    attributes."""
     if isinstance(value, dict):
         return Record(value)
     if not isinstance(value, list):
@@ -84,7 +85,9 @@ class Records(list[Any]):
         raise AttributeError(f"there is no `{name}`; there are {names}", name=name, obj=self)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *(key for one in list.__iter__(self) for key in one if key.isidentifier())]
+        return [
+            *super().__dir__(), *(key for one in list.__iter__(self) for key in one if key.isidentifier())
+        ]
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame`` with a row for each."""
@@ -100,9 +103,9 @@ class Records(list[Any]):
 class StudyResult:
     """What a study found.
 
-    The fields of the command's answer are attributes: numbers, arrays (what is not finite or not known is NaN), and
-    objects with attributes of their own. ``json`` is the answer as it came: docs/scripting.md and the schemas of the
-    command describe it.
+    The fields of the command's answer are attributes: numbers, arrays (what is not finite or not known is
+    NaN), and objects with attributes of their own. ``json`` is the answer as it came: docs/scripting.md and
+    the schemas of the command describe it.
 
     Attributes
     ----------
@@ -131,7 +134,9 @@ class StudyResult:
         if name in self._fields():
             return converted(name, self.json[name])
         raise AttributeError(
-            f"the answer of `{self.verb}` has no `{name}`; it has {', '.join(self._fields())}", name=name, obj=self
+            f"the answer of `{self.verb}` has no `{name}`; it has {', '.join(self._fields())}",
+            name=name,
+            obj=self,
         )
 
     def __dir__(self) -> list[str]:
@@ -220,8 +225,8 @@ class LinearModel(StudyResult):
     def to_control(self) -> Any:
         """The same as a ``control.StateSpace`` of python-control.
 
-        A model without inputs or outputs gets one input and one output per state, so that there is a system: its
-        B is zero, its C the identity.
+        A model without inputs or outputs gets one input and one output per state, so that there is a system:
+        its B is zero, its C the identity.
         """
         control = needed("control", "to_control()")
         states, inputs, outputs = (list(self.json[key]) for key in ("states", "inputs", "outputs"))
@@ -234,7 +239,7 @@ class LinearModel(StudyResult):
         return control.ss(self.A, b, c, d, states=states, inputs=inputs, outputs=outputs)
 
 
-# ---- how answers are shown ------------------------------------------------------------------------------------------
+# ---- how answers are shown ---------------------------------------------------------------------------------
 
 
 def _short(value: Any, key: str = "") -> str:
@@ -273,7 +278,9 @@ def _table(records: Any) -> tuple[list[str], list[list[str]]]:
 def _table_lines(records: Any) -> list[str]:
     keys, rows = _table(records)
     widths = [max(len(row[i]) for row in [keys, *rows]) for i in range(len(keys))]
-    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in [keys, *rows]]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in [keys, *rows]
+    ]
     return lines + ([f"... {len(records)} in all"] if len(records) > MOST_SHOWN else [])
 
 
@@ -300,7 +307,9 @@ def _records_html(records: Any) -> str:
 
 
 def _html_of(fields: dict[str, Any]) -> str:
-    plain = [[key, _short(v, key)] for key, v in fields.items() if not _is_table(v) and not isinstance(v, dict)]
+    plain = [
+        [key, _short(v, key)] for key, v in fields.items() if not _is_table(v) and not isinstance(v, dict)
+    ]
     parts = [table_html(["", "value"], plain)] if plain else []
     for key, value in fields.items():
         if _is_table(value):

@@ -35,7 +35,9 @@ def _values_in_words(name: str, values: Any) -> str:
         low, high, count = values
         return f"from {text_of(name, low)} to {text_of(name, high)} count {count}"
     if not is_several(values) or len(values) == 0:
-        raise TypeError(f"`{name}` is varied by an array, by (low, high, count) or by words, not by {values!r}")
+        raise TypeError(
+            f"`{name}` is varied by an array, by (low, high, count) or by words, not by {values!r}"
+        )
     numbers = [text_of(name, value) for value in values]
     if not np.isfinite(np.asarray(values, dtype=float)).all():
         raise ValueError(f"`{name}` is varied by finite numbers")
@@ -46,7 +48,8 @@ def dataset_of(table: Path, answer: Answer) -> Any:
     """The table, in memory; None where there is none."""
     if not table.exists():
         return None
-    engine = "scipy" if importlib.util.find_spec("scipy") else None  # scipy reads classic netCDF without netCDF4
+    # SciPy reads classic netCDF without netCDF4.
+    engine = "scipy" if importlib.util.find_spec("scipy") else None
     with needed("xarray", "model.sweep()").open_dataset(table, engine=engine) as data:
         loaded = data.load()
     loaded.attrs["statistics"] = answer.json.get("kept")

@@ -63,7 +63,9 @@ class Values(Mapping[str, Value]):
     def __getitem__(self, name: str) -> Value:
         values = self._read()
         if name not in values:
-            raise KeyError(f"the model has no {self._what} `{name}`; {did_you_mean(str(name), values)}".rstrip("; "))
+            raise KeyError(
+                f"the model has no {self._what} `{name}`; {did_you_mean(str(name), values)}".rstrip("; ")
+            )
         return values[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -96,7 +98,8 @@ class Values(Mapping[str, Value]):
 
 
 class SettableValues(Values, MutableMapping[str, Value]):
-    """The same, of which each can be set for the runs to come; ``del`` gives it back the value in the text."""
+    """The same, of which each can be set for the runs to come; ``del`` gives it back the value in the
+    text."""
 
     def __init__(
         self,
@@ -123,7 +126,9 @@ def _range_text(range: Optional[tuple[float, float]]) -> str:
 
 def table_html(header: list[str], rows: list[list[Any]]) -> str:
     """A small table. Columns in which nothing stands are left out."""
-    used = [i for i in range(len(header)) if any(str(row[i]) for row in rows)] if rows else list(range(len(header)))
+    used = [i for i in range(len(header)) if any(str(row[i]) for row in rows)] if rows else list(
+        range(len(header))
+    )
     head = "".join(f"<th>{html.escape(header[i])}</th>" for i in used)
     body = "".join(
         "<tr>" + "".join(f"<td>{html.escape(str(row[i]))}</td>" for i in used) + "</tr>" for row in rows

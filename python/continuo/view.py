@@ -29,8 +29,8 @@ PICTURES = 5  # a second: what this client needs to know the time
 class View:
     """A live view: the motion as a drawing, with sliders.
 
-    Where it is the last line of a cell it shows itself there; elsewhere the browser opens it. It needs a browser on
-    the same computer. ``close()`` ends it; so does the end of Python.
+    Where it is the last line of a cell it shows itself there; elsewhere the browser opens it. It needs a
+    browser on the same computer. ``close()`` ends it; so does the end of Python.
 
     Attributes
     ----------
@@ -58,7 +58,8 @@ class View:
         self._text = model.text
         self.state: dict[str, Any] = {}
         self.t = 0.0
-        self._independent: dict[str, float] = {}  # the parameters that depend on no others, as the text has them
+        # The parameters that depend on no others, as the text has them.
+        self._independent: dict[str, float] = {}
         self._is_of_model = True
         self._changed = threading.Condition()
         opens = not in_notebook() if open_browser is None else open_browser
@@ -77,13 +78,15 @@ class View:
         with self._changed:
             self._changed.wait_for(lambda: bool(self.state), timeout)
 
-    # ---- the child --------------------------------------------------------------------------------------------------
+    # ---- the child -----------------------------------------------------------------------------------------
 
     def _begin(self, opens: bool) -> "subprocess.Popen[str]":
         model = self._model
         given, initial = model._resolved_all({}, None)
         if initial:
-            raise ValueError("the view begins where the text says; model.reset() gives back its initial values")
+            raise ValueError(
+                "the view begins where the text says; model.reset() gives back its initial values"
+            )
         inputs = [one[0] for one in model._part("inputs")]
         settings = [f"--set={name}={value!r}" for name, value in given.items() if name not in inputs]
         arguments = [command_path(), "view", str(self._file()), "--json", *settings]
@@ -97,8 +100,8 @@ class View:
         )  # fmt: skip
 
     def _file(self) -> Path:
-        """The model's own file where it has this text, so that the page can save it; else one beside which there are
-        the tables that the text names."""
+        """The model's own file where it has this text, so that the page can save it; else one beside which
+        there are the tables that the text names."""
         model = self._model
         if model._path is not None:
             own = model._folder / model._path.name
@@ -143,7 +146,7 @@ class View:
         self._messages.close()
         self._folder.cleanup()
 
-    # ---- what it says -----------------------------------------------------------------------------------------------
+    # ---- what it says --------------------------------------------------------------------------------------
 
     def _listen(self) -> None:
         try:
@@ -160,7 +163,9 @@ class View:
         elif message["say"] == "model":
             # Somebody may have opened another model there, or have changed the text: that is not this model.
             self._is_of_model = message["text"] == self._text
-            self._independent = {one["name"]: one["file"] for one in message["parameters"] if one["independent"]}
+            self._independent = {
+                one["name"]: one["file"] for one in message["parameters"] if one["independent"]
+            }
         elif message["say"] == "state":
             self.state = message
             self.t = message["t"]
@@ -185,7 +190,7 @@ class View:
         with self._changed:
             return self._changed.wait_for(lambda: self.values.get(name) == value, timeout)
 
-    # ---- what can be said to it -------------------------------------------------------------------------------------
+    # ---- what can be said to it ----------------------------------------------------------------------------
 
     def set(self, name: str, value: float) -> None:
         """Sets a parameter or an input, at the time that is shown."""

@@ -29,8 +29,8 @@ needs_command = pytest.mark.skipif(COMMAND is None, reason="the command continuo
 # Events, modes, stiff and implicit systems, conditions at several times, worlds, inputs from files, families.
 SAMPLE = [
     "arenstorf", "ball_located", "ball_on_stairs", "billiards", "blasius", "bouncing_ball", "bratu",
-    "brusselator_line", "car", "double_pendulum", "falling_balls", "fed_batch", "heat_equation", "hires", "lorenz",
-    "mass_spring", "newtons_cradle", "pendulum_dae", "predator_prey", "rc_ladder", "robertson",
+    "brusselator_line", "car", "double_pendulum", "falling_balls", "fed_batch", "heat_equation", "hires",
+    "lorenz", "mass_spring", "newtons_cradle", "pendulum_dae", "predator_prey", "rc_ladder", "robertson",
     "stiff_spring_explicit", "thermostat", "wave_equation",
 ]  # fmt: skip
 
@@ -54,12 +54,14 @@ run 0..1000 output 100 tol 1e-12
 
 
 def rows_of_command(*arguments: str) -> np.ndarray:
-    done = subprocess.run([str(COMMAND), "run", *arguments, "-o", "-"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [str(COMMAND), "run", *arguments, "-o", "-"], capture_output=True, text=True, check=False
+    )
     lines = [line for line in done.stdout.splitlines() if not line.startswith("#")]
     return np.array(list(csv.reader(lines))[1:], dtype=float)
 
 
-# ---- the same as the command ----------------------------------------------------------------------------------------
+# ---- the same as the command -------------------------------------------------------------------------------
 
 
 @needs_command
@@ -87,7 +89,8 @@ def test_random_settings_to_the_bit() -> None:
 
 
 def test_closed_form_at_random_parameters() -> None:
-    # x(t) = x0 cos(w t) + v0/w sin(w t); the global error of tol 1e-10 over a few turns is some hundred of it.
+    # x(t) = x0 cos(w t) + v0/w sin(w t); the global error of tol 1e-10 over a few turns is some hundred of
+    # it.
     rng = np.random.default_rng(7)
     model = Model(text=SPRING)
     for _ in range(20):
@@ -103,7 +106,7 @@ def test_native_is_the_same() -> None:
     np.testing.assert_array_equal(runs[0].table, runs[1].table)
 
 
-# ---- what a run has -------------------------------------------------------------------------------------------------
+# ---- what a run has ----------------------------------------------------------------------------------------
 
 
 def test_rows_and_names() -> None:
@@ -139,7 +142,9 @@ def test_data_is_that_of_netcdf(tmp_path: Path) -> None:
         pytest.skip("the command continuo is not there")
     for name in ("bouncing_ball", "heat_equation", "newtons_cradle"):
         file = tmp_path / f"{name}.nc"
-        subprocess.run([COMMAND, "run", str(MODELS / f"{name}.sim"), "-o", str(file)], capture_output=True, check=True)
+        subprocess.run(
+            [COMMAND, "run", str(MODELS / f"{name}.sim"), "-o", str(file)], capture_output=True, check=True
+        )
         data = Model(MODELS / f"{name}.sim").run().data
         with xarray.open_dataset(file, engine="scipy", decode_times=False) as wanted:
             assert set(data.variables) == set(wanted.variables)
@@ -171,7 +176,9 @@ def test_events_as_a_table() -> None:
 
 
 def test_families_are_arrays() -> None:
-    run = Model(text="param N = 3\nfor i in 1..N { u[i]' = -i*u[i]; u[i](0) = 1 }\nrun 0..1 output 0.5 tol 1e-9").run(N=5)
+    run = Model(
+        text="param N = 3\nfor i in 1..N { u[i]' = -i*u[i]; u[i](0) = 1 }\nrun 0..1 output 0.5 tol 1e-9"
+    ).run(N=5)
     assert run["u"].shape == (3, 5)
     np.testing.assert_allclose(run["u"][-1], np.exp(-np.arange(1, 6)), rtol=1e-7)
     cradle = Model(MODELS / "newtons_cradle.sim").run()
@@ -215,7 +222,7 @@ def test_pictures() -> None:
     pyplot.close("all")
 
 
-# ---- settings -------------------------------------------------------------------------------------------------------
+# ---- settings ----------------------------------------------------------------------------------------------
 
 
 def test_parameters_are_attributes() -> None:
@@ -332,7 +339,7 @@ def test_a_value_out_of_range_is_warned_of() -> None:
     assert caught[0].filename == __file__
 
 
-# ---- what goes wrong ------------------------------------------------------------------------------------------------
+# ---- what goes wrong ---------------------------------------------------------------------------------------
 
 
 def test_errors_of_the_text() -> None:
@@ -349,7 +356,9 @@ def test_errors_of_the_text() -> None:
 def test_errors_are_the_text_of_the_command(tmp_path: Path) -> None:
     file = tmp_path / "wrong.sim"
     file.write_text("param k = 3 [N]\nx'' = -k*x + y\nx(0) = 1\nrun 0..1\n")
-    printed = subprocess.run([str(COMMAND), "check", str(file)], capture_output=True, text=True, check=False).stderr
+    printed = subprocess.run(
+        [str(COMMAND), "check", str(file)], capture_output=True, text=True, check=False
+    ).stderr
     with pytest.raises(ModelError) as caught:
         Model(file)
     assert str(caught.value) == printed.rstrip("\n")
@@ -429,11 +438,14 @@ def test_ctrl_c_ends_a_run_at_once_and_keeps_it() -> None:
             model.run()
         except KeyboardInterrupt as error:
             assert isinstance(error, Interrupted)
-            print(time.monotonic() - pressed, len(error.run), error.run.outcome.interrupted, abs(error.run["x"]).max())
+            run = error.run
+            print(time.monotonic() - pressed, len(run), run.outcome.interrupted, abs(run["x"]).max())
         print(model.run(1).success)
     """
     done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60, check=False
+        [
+            sys.executable, "-c", textwrap.dedent(script)
+        ], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.returncode == 0, done.stderr
     seconds, rows, interrupted, largest = done.stdout.split()[:4]
@@ -454,7 +466,7 @@ def test_what_a_signal_raises_passes_through() -> None:
         signal.signal(signal.SIGALRM, before)
 
 
-# ---- copies, threads, cost ------------------------------------------------------------------------------------------
+# ---- copies, threads, cost ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["bouncing_ball", "car", "newtons_cradle", "heat_equation"])
@@ -514,7 +526,9 @@ def test_forked_processes() -> None:
         print(os.waitstatus_to_exitcode(os.wait()[1]))
     """
     done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60, check=False
+        [
+            sys.executable, "-c", textwrap.dedent(script)
+        ], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.stdout.split() == ["True", "0"], done.stderr
 

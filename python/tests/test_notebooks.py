@@ -23,7 +23,9 @@ def executions() -> Iterator[dict[Path, "Future[object]"]]:
     """All of them at the same time: a kernel takes seconds to begin."""
 
     def execute(path: Path) -> object:
-        return nbclient.NotebookClient(nbformat.read(path, as_version=4), timeout=100, kernel_name="python3").execute()
+        return nbclient.NotebookClient(
+            nbformat.read(path, as_version=4), timeout=100, kernel_name="python3"
+        ).execute()
 
     with ThreadPoolExecutor(len(NOTEBOOKS)) as pool:
         yield {path: pool.submit(execute, path) for path in NOTEBOOKS}

@@ -22,7 +22,8 @@ def test_a_line_in_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     bar = ProgressBar("Spring")
     bar(3.0, 0.25)
     bar(1.5)  # it may be more than all
-    assert "Spring [########----------------------] 25 %" in terminal.getvalue() and "100 %" in terminal.getvalue()
+    assert "Spring [########----------------------] 25 %" in terminal.getvalue()
+    assert "100 %" in terminal.getvalue()
     bar.close()
     assert terminal.getvalue().endswith("\r\033[K")
 

@@ -36,7 +36,7 @@ def exact(t: np.ndarray, k: float, c: float) -> np.ndarray:
     return np.exp(-c * t / 2) * (np.cos(w * t) + c / (2 * w) * np.sin(w * t))
 
 
-# ---- what is found --------------------------------------------------------------------------------------------------
+# ---- what is found -----------------------------------------------------------------------------------------
 
 
 def test_linearize() -> None:
@@ -44,7 +44,9 @@ def test_linearize() -> None:
     np.testing.assert_allclose(linear.A, [[0, 1], [-9, -0.5]], rtol=1e-12)
     assert linear.states == ["x", "x'"] and linear.B.shape == (2, 0) and linear.C.shape == (0, 2)
     eigenvalue = linear.modes.eigenvalue[0]
-    assert eigenvalue.real == pytest.approx(-0.25) and abs(eigenvalue.imag) == pytest.approx(math.sqrt(9 - 1 / 16))
+    assert eigenvalue.real == pytest.approx(-0.25) and abs(eigenvalue.imag) == pytest.approx(
+        math.sqrt(9 - 1 / 16)
+    )
 
 
 def test_linearize_with_inputs_and_outputs() -> None:
@@ -57,9 +59,11 @@ def test_linearize_with_inputs_and_outputs() -> None:
 def test_linear_models_of_python_control(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list = []
     control = types.ModuleType("control")
-    control.ss = lambda *matrices, **names: asked.append((matrices, names))  # type: ignore[attr-defined]  # a stand-in
+    setattr(control, "ss", lambda *matrices, **names: asked.append((matrices, names)))
     monkeypatch.setitem(sys.modules, "control", control)
-    Model(text="input u = 0\nx' = -2*x + 3*u; x(0) = 0\noutput y = 5*x + 7*u\nrun 0..1").linearize().to_control()
+    Model(
+        text="input u = 0\nx' = -2*x + 3*u; x(0) = 0\noutput y = 5*x + 7*u\nrun 0..1"
+    ).linearize().to_control()
     (a, b, c, d), names = asked.pop()
     assert (a, b, c, d) == (-2, 3, 5, 7) and names == {"states": ["x"], "inputs": ["u"], "outputs": ["y"]}
     Model(text=DAMPED).linearize().to_control()
@@ -80,10 +84,14 @@ def test_steady_and_its_stability() -> None:
 
 def test_sensitivities_against_the_closed_form() -> None:
     t_end = 2.0
-    found = Model(text="param a = 0.7\nx' = -a*x; x(0) = 2\nrun 0..2 tol 1e-10").sensitivities("a", "x", output=0.5)
+    found = Model(text="param a = 0.7\nx' = -a*x; x(0) = 2\nrun 0..2 tol 1e-10").sensitivities(
+        "a", "x", output=0.5
+    )
     assert found.by.tolist() == ["a", "x(0)"] if isinstance(found.by, np.ndarray) else found.by[0] == "a"
     assert found.rows.by.shape == (5, 2, 1)
-    np.testing.assert_allclose(found.rows.by[-1, :, 0], [-2 * t_end * math.exp(-1.4), math.exp(-1.4)], rtol=1e-7)
+    np.testing.assert_allclose(
+        found.rows.by[-1, :, 0], [-2 * t_end * math.exp(-1.4), math.exp(-1.4)], rtol=1e-7
+    )
 
 
 def test_orders_of_methods() -> None:
@@ -106,7 +114,9 @@ def test_stability() -> None:
 
 
 def test_lyapunov_of_a_linear_system() -> None:
-    found = Model(text="x' = -x; y' = -3*y; x(0) = 1; y(0) = 1\nrun 0..5 tol 1e-8").lyapunov(settle=1, duration=20)
+    found = Model(text="x' = -x; y' = -3*y; x(0) = 1; y(0) = 1\nrun 0..5 tol 1e-8").lyapunov(
+        settle=1, duration=20
+    )
     np.testing.assert_allclose(found.exponents, [-1, -3], rtol=1e-3)
 
 
@@ -129,7 +139,7 @@ def test_verify_and_report(tmp_path: Path) -> None:
         Model(text="x' = 1; x(0) = 0\nrun 0..1\ncheck x at end = 2 within 1e-9").verify()
 
 
-# ---- fits -----------------------------------------------------------------------------------------------------------
+# ---- fits --------------------------------------------------------------------------------------------------
 
 
 def test_fit_of_random_parameters() -> None:
@@ -143,7 +153,8 @@ def test_fit_of_random_parameters() -> None:
         # Within six of the deviations that it claims itself.
         np.testing.assert_array_less(np.abs(fit.unknowns.value - [k, c]), 6 * fit.unknowns.deviation)
     model.take(fit)
-    assert model.k == fit.values["k"] == fit.unknowns[0].value and fit.deviations["k"] == fit.unknowns[0].deviation
+    assert model.k == fit.values["k"] == fit.unknowns[0].value
+    assert fit.deviations["k"] == fit.unknowns[0].deviation
 
 
 def test_fit_takes_tables_of_all_kinds(tmp_path: Path) -> None:
@@ -177,7 +188,7 @@ def test_no_measurements(data: tuple, error: type, words: str) -> None:
         Model(text=DAMPED).fit(*data, param="k")
 
 
-# ---- sweeps ---------------------------------------------------------------------------------------------------------
+# ---- sweeps ------------------------------------------------------------------------------------------------
 
 
 def test_sweep_against_single_runs() -> None:
@@ -223,7 +234,7 @@ def test_wrong_sweeps() -> None:
         model.sweep(k=[1, 2], out="table.csv")
 
 
-# ---- options, settings, errors --------------------------------------------------------------------------------------
+# ---- options, settings, errors -----------------------------------------------------------------------------
 
 
 def test_what_is_wrong_is_said() -> None:
@@ -294,14 +305,16 @@ def test_what_starts_the_command_may_talk(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_command_that_crashes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     program = tmp_path / "continuo"
-    program.write_text('#!/bin/sh\n[ "$1" = help ] && echo \'{"options": []}\' && exit\necho oops >&2\nkill -9 $$\n')
+    program.write_text(
+        '#!/bin/sh\n[ "$1" = help ] && echo \'{"options": []}\' && exit\necho oops >&2\nkill -9 $$\n'
+    )
     program.chmod(0o755)
     monkeypatch.setenv("CONTINUO_COMMAND", str(program))
     with pytest.raises(CommandError, match="signal 9.*\n*oops"):
         Model(text=DAMPED).steady()
 
 
-# ---- results --------------------------------------------------------------------------------------------------------
+# ---- results -----------------------------------------------------------------------------------------------
 
 
 def test_answers_as_arrays() -> None:
@@ -327,7 +340,7 @@ def test_results_show_themselves() -> None:
     assert isinstance(found.equilibria.to_pandas(), pandas.DataFrame)
 
 
-# ---- Ctrl-C ---------------------------------------------------------------------------------------------------------
+# ---- Ctrl-C ------------------------------------------------------------------------------------------------
 
 
 def test_ctrl_c_ends_the_child_and_a_sweep_can_be_resumed() -> None:
@@ -351,7 +364,9 @@ def test_ctrl_c_ends_the_child_and_a_sweep_can_be_resumed() -> None:
             print(data.sizes["run"], int(data["x at end"].isnull().sum()))
     """
     done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60, check=False
+        [
+            sys.executable, "-c", textwrap.dedent(script)
+        ], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.stdout.split() == ["256", "0"], done.stderr
 

@@ -89,7 +89,9 @@ def test_it_ends_with_python() -> None:
         print(View(Model(text={TEXT!r}), open_browser=False)._child.pid)
     """
     done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=30, check=True
+        [
+            sys.executable, "-c", textwrap.dedent(script)
+        ], capture_output=True, text=True, timeout=30, check=True
     )
     with pytest.raises(ProcessLookupError):
         os.kill(int(done.stdout), 0)

@@ -1,4 +1,5 @@
-"""The live view in a page of another address, as a notebook is one: a slider moved by hand there is a value here."""
+"""The live view in a page of another address, as a notebook is one: a slider moved by hand there is a value
+here."""
 
 import base64
 import http.server
@@ -38,7 +39,8 @@ MOVE = """(() => {
 
 
 class Tab(LiveClient):
-    """A tab or a frame of the browser, by its debugging protocol, whose messages are framed like those of the view."""
+    """A tab or a frame of the browser, by its debugging protocol, whose messages are framed like those of the
+    view."""
 
     def __init__(self, address: str) -> None:
         parts = urlsplit(address)
@@ -46,8 +48,8 @@ class Tab(LiveClient):
         self._waiting, self._sending, self._number = b"", threading.Lock(), 0
         key = base64.b64encode(os.urandom(16)).decode()
         self._socket.sendall(
-            f"GET {parts.path} HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-            f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+            f"GET {parts.path} HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\n"
+            f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
         )
         head = b""
         while not head.endswith(b"\r\n\r\n"):
@@ -118,7 +120,9 @@ def test_a_slider_moved_there_is_a_value_here(browser: str, tmp_path: Path) -> N
         assert view.wait_for("k", 7) and model.k == 7
         model.k = 2
         assert view.wait_for("k", 2)
-        wait_for(lambda: frame.value_of('document.querySelector("input[type=text][aria-label=k]").value') == "2")
+        wait_for(
+            lambda: frame.value_of('document.querySelector("input[type=text][aria-label=k]").value') == "2"
+        )
         page.close()
         frame.close()
         notebook.shutdown()
