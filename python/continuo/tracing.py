@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _continuo
-from .expressions import Expression, TraceError, Writer, constant, expression_array
+from .expression_text import Writer
+from .expressions import Expression, TraceError, constant, expression_array
 from .right_hand_side import Parameters, RightHandSide
 
 __all__ = ["Traced", "trace"]
