@@ -67,9 +67,13 @@ def test_changed_parameters_and_states_take_effect(integrator: str) -> None:
             r.integrate(r.t + 0.25)
             phase += 0.5 * part * scale
             assert np.abs(r.y - [np.cos(phase), -np.sin(phase)]).max() < 1e-7
+    for w in (1.0, 5.0, 2.0):  # by the variable alone
+        for _ in range(3):
+            r.integrate(r.t + 0.1)
+            phase += 0.1 * w * 2.0
+            assert np.abs(r.y - [np.cos(phase), -np.sin(phase)]).max() < 1e-7
     r.y[:] = [0.0, 1.0]
-    w = 1.0
-    r.set_f_params(1.0)
+    w = 0.5
     r.integrate(r.t + 0.5)
     assert np.abs(r.y - [np.sin(0.5), np.cos(0.5)]).max() < 1e-7
 
@@ -241,7 +245,7 @@ def test_nothing_leaks() -> None:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
     def some() -> None:
-        for _ in range(1000):
+        for _ in range(300):
             r = begun("dop853")
             r.integrate(0.1)
             r.integrate(0.2)

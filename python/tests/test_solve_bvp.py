@@ -27,7 +27,7 @@ def random_linear(seed: int, is_complex: bool):
         real = rng.normal(size=shape)
         return real + 1j * rng.normal(size=shape) if is_complex else real
 
-    a, g, first, last, c = 2 * numbers(n, n), numbers(n), numbers(n, n), numbers(n, n), numbers(n)
+    a, g, first, last, c = numbers(n, n), numbers(n), numbers(n, n), numbers(n, n), numbers(n)
     whole = exponential(a)
     particular = np.linalg.solve(a, g)  # y = exp(A x) v - A^-1 g
     condition = first + last @ whole
@@ -146,6 +146,9 @@ def test_not_a_number_is_no_success() -> None:
     found = solve_bvp(lambda x, y: np.full_like(y, np.nan), ends, X, Y)
     assert (found.status, found.success) == (4, False)
     assert found.message == "Component 0 of `fun` is infinite or not a number at x = 0."
+    # Between nodes and middles, where the residual is measured.
+    found = solve_bvp(lambda x, y: np.vstack((y[1], np.where(abs(x - 0.2068) < 0.01, np.nan, 0 * x))), ends, X, Y)
+    assert (found.status, found.success) == (4, False)
     with np.errstate(all="ignore"):
         found = solve_bvp(lambda x, y: np.vstack((y[1], 1 / (x - 0.25))), ends, X, Y)
         assert "Component 1 of `fun`" in found.message and "x = 0.25" in found.message
