@@ -78,6 +78,7 @@ class RightHandSide:
     def __init__(self, text: str, name: str = "equations", native: str = "auto") -> None:
         self._compiled = _continuo.RightHandSide(text, name, native)
         self._base = self._compiled
+        self._native: _continuo.Native | None = None  # of the present values, once it was asked for
         self._settings: dict[str, float] = {}
         self._name, self._use = name, native
 
@@ -162,14 +163,11 @@ class RightHandSide:
 
     def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
         """The compiled functions for the solvers, with the parameters as they are now, or with these."""
-        compiled = self._with(tuple(args))
-        return _continuo.Native(
-            compiled.derivative_address,
-            jacobian=compiled.jacobian_address,
-            user=compiled.user,
-            size=compiled.n,
-            owner=compiled,
-        )
+        if args:
+            return _native_of(self._with(tuple(args)))
+        if self._native is None:
+            self._native = _native_of(self._compiled)
+        return self._native
 
     # ---- parameters ----
 
@@ -192,6 +190,7 @@ class RightHandSide:
     def _set_parameters(self, values: Parameters) -> None:
         settings = {**self._settings, **self._flat(values)}
         self._compiled = self._base.with_parameters(settings)
+        self._native = None
         self._settings = settings
 
     def _with(self, args: tuple[Any, ...]) -> _continuo.RightHandSide:
@@ -208,7 +207,7 @@ class RightHandSide:
         return _restored, (type(self), self._state_for_pickle())
 
     def _state_for_pickle(self) -> dict[str, Any]:
-        state = {key: value for key, value in self.__dict__.items() if key not in ("_compiled", "_base")}
+        state = {key: value for key, value in self.__dict__.items() if key not in ("_compiled", "_base", "_native")}
         return {**state, "text": self._base.text}
 
     def __repr__(self) -> str:
@@ -223,9 +222,20 @@ def _restored(kind: type[RightHandSide], state: dict[str, Any]) -> RightHandSide
     self = kind.__new__(kind)
     text = state.pop("text")
     self.__dict__.update(state)
+    self._native = None
     self._base = _continuo.RightHandSide(text, self._name, self._use)
     self._compiled = self._base.with_parameters(self._settings) if self._settings else self._base
     return self
+
+
+def _native_of(compiled: _continuo.RightHandSide) -> _continuo.Native:
+    return _continuo.Native(
+        compiled.derivative_address,
+        jacobian=compiled.jacobian_address,
+        user=compiled.user,
+        size=compiled.n,
+        owner=compiled,
+    )
 
 
 def _real(y: ArrayLike) -> NDArray[np.float64]:
