@@ -65,9 +65,8 @@ class Writer:
             written = (str(node.value), _ATOM, 0)
         elif node.operation == "number":
             number = repr(node.value)
-            written = (number[:-2] if number.endswith(".0") else number, _ATOM if float(node.value) >= 0 else 7, 0)
-            if number.startswith("-"):
-                written = (written[0], 7, 0)
+            level = _LEVELS["negate"] if number.startswith("-") else _ATOM
+            written = (number[:-2] if number.endswith(".0") else number, level, 0)
         else:
             written = self._operation(node)
             if self._uses[id(node)] > 1 or written[2] > _DEEPEST:

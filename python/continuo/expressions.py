@@ -1,8 +1,8 @@
 """Symbolic numbers: what a traced Python function computes with instead of floats.
 
-An :class:`Expression` is a number that is not known yet, an :class:`ExpressionArray` a NumPy array of them. NumPy's
-functions on them build expressions of the language of models; what would need the value itself raises a
-:class:`TraceError` that says what to write instead.
+An :class:`Expression` is a number that is not known yet, an :class:`ExpressionArray` a NumPy array of them.
+NumPy's functions on them build expressions of the language of models; what would need the value itself raises
+a :class:`TraceError` that says what to write instead.
 """
 
 from __future__ import annotations
@@ -24,19 +24,21 @@ Operand = Union["Expression", float]
 
 
 class TraceError(TypeError):
-    """A function cannot be traced as it is written: the message says where, why, and what to write instead."""
+    """A function cannot be traced as it is written: the message says where, why, and what to write."""
 
 
 # Functions of `math` and of Python whose counterpart in NumPy has another name.
 _NUMPY_NAMES = {
-    "acos": "arccos", "asin": "arcsin", "atan": "arctan", "atan2": "arctan2", "acosh": "arccosh", "asinh": "arcsinh",
-    "atanh": "arctanh", "pow": "power", "dist": "hypot", "abs": "abs", "max": "maximum", "min": "minimum",
+    "acos": "arccos", "asin": "arcsin", "atan": "arctan", "atan2": "arctan2", "acosh": "arccosh",
+    "asinh": "arcsinh", "atanh": "arctanh", "pow": "power", "dist": "hypot", "abs": "abs", "max": "maximum",
+    "min": "minimum",
 }  # fmt: skip
 _MATH_CALL = re.compile(r"\b(?:c?math\.)(\w+)\s*\(")
 
 
 def _place() -> str:
-    """The line of the traced function that is at work, with its text: the first outside of this file and of NumPy."""
+    """The line of the traced function that is at work, with its text: the first outside of this file and of
+    NumPy."""
     frame = sys._getframe(1)
     while frame is not None:
         name = frame.f_code.co_filename
@@ -59,7 +61,9 @@ class Expression:
 
     __slots__ = ("operation", "arguments", "value")
 
-    def __init__(self, operation: str, arguments: tuple[Expression, ...] = (), value: float | str = 0.0) -> None:
+    def __init__(
+        self, operation: str, arguments: tuple[Expression, ...] = (), value: float | str = 0.0
+    ) -> None:
         self.operation = operation  # "number", "name", an operator, or the name of a function of the language
         self.arguments = arguments
         self.value = value  # of a number; the text of a name
@@ -179,7 +183,8 @@ class Expression:
     def __bool__(self) -> bool:
         raise _refuse(
             f"whether `{self}` holds is not known while the function is traced",
-            "write continuo.where(condition, a, b) for a choice (`if`, `and`, `or`, `not`), np.maximum and np.minimum "
+            "write continuo.where(condition, a, b) for a choice (`if`, `and`, `or`, `not`), "
+            "np.maximum and np.minimum "
             "for max and min",
         )
 
@@ -190,7 +195,8 @@ class Expression:
             raise _refuse(f"math.{call[1]} takes floats only", f"write np.{name}")
         raise _refuse(
             f"the value of `{self}` is not known while the function is traced",
-            "leave float() out; an array that is to hold it must be made from y: np.zeros_like(y), np.empty_like(y), "
+            "leave float() out; an array that is to hold it must be made from y: "
+            "np.zeros_like(y), np.empty_like(y), "
             "np.array([...]); of a function of math write that of np",
         )
 
@@ -203,7 +209,8 @@ class Expression:
     def __index__(self) -> int:
         raise _refuse(
             f"the value of `{self}` is not known while the function is traced",
-            "an index or the length of a loop must be an int that does not depend on t, y or a float parameter",
+            "an index or the length of a loop must be an int that does not depend on t, y or a "
+            "float parameter",
         )
 
     def __repr__(self) -> str:
@@ -226,7 +233,7 @@ class Expression:
         return lambda *others: handler(self, *others)
 
 
-# ---- building ---------------------------------------------------------------------------------------------------------
+# ---- building ----------------------------------------------------------------------------------------------
 
 
 def constant(value: Any) -> Expression:
@@ -243,7 +250,9 @@ def constant(value: Any) -> Expression:
         raise _refuse(f"{value} is complex", "write real and imaginary parts as two states")
     number = float(value)
     if not math.isfinite(number):
-        raise _refuse(f"{number} is no number that a model can contain", "leave it out, or take a large finite one")
+        raise _refuse(
+            f"{number} is no number that a model can contain", "leave it out, or take a large finite one"
+        )
     return Expression("number", value=number)
 
 
@@ -272,8 +281,11 @@ def _logical(operation: str, a: Any, b: Any) -> Any:
     if not _is_scalar(a) or not _is_scalar(b):
         return NotImplemented
     for value in (a, b):
-        if isinstance(value, Expression) and value.operation not in _LOGICAL:
-            raise _refuse(f"& and | of `{value}`, which is no condition", "compare it: (y[0] > 0) & (y[1] < 1)")
+        is_condition = value.operation in _LOGICAL if isinstance(value, Expression) else value in (0, 1)
+        if not is_condition:  # ~ of a Python bool is -1 or -2
+            raise _refuse(
+                f"& and | of `{value}`, which is no condition", "compare it: (y[0] > 0) & (y[1] < 1)"
+            )
     return Expression(operation, (_condition(a), _condition(b)))
 
 
@@ -337,8 +349,8 @@ def _operator(operation: str) -> Callable[..., Any]:
 
 # NumPy's elementwise functions by name, for scalars.
 UFUNCS: dict[str, Callable[..., Any]] = {
-    **{name: _one(name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log2", "log10")},
-    **{name: _one(name) for name in ("sqrt", "cbrt", "floor", "ceil", "sign")},
+    **{name: _one(name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")},
+    **{name: _one(name) for name in ("log2", "log10", "sqrt", "cbrt", "floor", "ceil", "sign")},
     **{"arc" + name: _one("a" + name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh")},
     "absolute": _one("abs"), "fabs": _one("abs"), "negative": lambda x: -constant(x), "positive": lambda x: x,
     "rint": _rounded, "trunc": _truncated, "square": lambda x: constant(x) ** 2,
@@ -347,8 +359,9 @@ UFUNCS: dict[str, Callable[..., Any]] = {
     "deg2rad": lambda x: constant(x) * (math.pi / 180), "radians": lambda x: constant(x) * (math.pi / 180),
     "rad2deg": lambda x: constant(x) * (180 / math.pi), "degrees": lambda x: constant(x) * (180 / math.pi),
     **{name: _operator(text) for name, text in {
-        "add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/", "power": "^", "less": "<",
-        "less_equal": "<=", "greater": ">", "greater_equal": ">=", "equal": "==", "not_equal": "!="}.items()},
+        "add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/", "power": "^",
+        "less": "<", "less_equal": "<=", "greater": ">", "greater_equal": ">=", "equal": "==",
+        "not_equal": "!="}.items()},
     "float_power": _float_power, "remainder": _two("mod"), "mod": _two("mod"), "fmod": _remainder_of_c,
     "floor_divide": lambda a, b: constant(a) // b, "divmod": lambda a, b: (constant(a) // b, constant(a) % b),
     "maximum": _two("max"), "minimum": _two("min"), "fmax": _two("max"), "fmin": _two("min"),
@@ -368,7 +381,7 @@ _INSTEAD = {
 }
 
 
-# ---- arrays -----------------------------------------------------------------------------------------------------------
+# ---- arrays ------------------------------------------------------------------------------------------------
 
 
 class ExpressionArray(np.ndarray[Any, np.dtype[Any]]):
@@ -432,7 +445,9 @@ def _ufunc(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict[
         return _matmul(*inputs)
     handler = UFUNCS.get(name)
     if handler is None:
-        raise _refuse(f"np.{name} has no counterpart in a model", _INSTEAD.get(name, "write it by other functions"))
+        raise _refuse(
+            f"np.{name} has no counterpart in a model", _INSTEAD.get(name, "write it by other functions")
+        )
     if method != "__call__":
         plain = tuple(_plain(operand) for operand in inputs)
         if method == "at":
@@ -457,11 +472,15 @@ def _ufunc(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict[
     return out
 
 
+def _is_zero(value: Any) -> bool:
+    return isinstance(value, (int, float)) and value == 0
+
+
 def _sum_of_products(a: Any, b: Any) -> Any:
     total: Any = 0.0
     for left, right in zip(a, b):
         # Of a sparse matrix that is written as a full one, the zeros are left out.
-        if not (isinstance(left, (int, float)) and left == 0) and not (isinstance(right, (int, float)) and right == 0):
+        if not (_is_zero(left) or _is_zero(right)):
             product = left * right
             total = product if isinstance(total, float) and total == 0 else total + product
     return total
@@ -501,7 +520,9 @@ def _array_function(function: Any, args: tuple[Any, ...], options: dict[str, Any
     except TraceError:
         raise
     except TypeError as error:
-        raise _refuse(f"np.{name} cannot be traced ({error})", "write it by elementwise functions and loops") from error
+        raise _refuse(
+            f"np.{name} cannot be traced ({error})", "write it by elementwise functions and loops"
+        ) from error
 
 
 def _unwrapped(value: Any) -> Any:
@@ -515,10 +536,12 @@ def _unwrapped(value: Any) -> Any:
     return value
 
 
-# ---- functions for those who write f ----------------------------------------------------------------------------------
+# ---- functions for those who write f -----------------------------------------------------------------------
 
 
-def _of_numbers_or_expressions(handler: Callable[..., Any], numpy_function: Callable[..., Any], *args: Any) -> Any:
+def _of_numbers_or_expressions(
+    handler: Callable[..., Any], numpy_function: Callable[..., Any], *args: Any
+) -> Any:
     def is_symbolic(value: Any) -> bool:
         return isinstance(value, Expression) or (getattr(np.asarray(value), "dtype", None) == object)
 
@@ -547,10 +570,12 @@ def where(condition: Any, a: Any, b: Any) -> Any:
 
 
 def maximum(a: Any, b: Any) -> Any:
-    """The larger of two numbers, as ``np.maximum``, also of arrays made by ``np.array`` from symbolic numbers."""
+    """The larger of two numbers, as ``np.maximum``, also of arrays made by ``np.array`` from symbolic
+    numbers."""
     return _of_numbers_or_expressions(UFUNCS["maximum"], np.maximum, a, b)
 
 
 def minimum(a: Any, b: Any) -> Any:
-    """The smaller of two numbers, as ``np.minimum``, also of arrays made by ``np.array`` from symbolic numbers."""
+    """The smaller of two numbers, as ``np.minimum``, also of arrays made by ``np.array`` from symbolic
+    numbers."""
     return _of_numbers_or_expressions(UFUNCS["minimum"], np.minimum, a, b)

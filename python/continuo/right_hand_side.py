@@ -1,4 +1,4 @@
-"""Right-hand sides in the language of models: evaluated and differentiated in compiled code, without Python."""
+"""Right-hand sides in the language of models: evaluated and differentiated in compiled code."""
 
 from __future__ import annotations
 
@@ -44,8 +44,9 @@ class ParameterValues(MutableMapping[str, Any]):
 class RightHandSide:
     """The function f of y' = f(t, y), given by equations in the language of models.
 
-    It is called as a Python function is, and solvers run it in compiled code: without the interpreter, from any number
-    of threads, with exact Jacobians. Made by :func:`continuo.expression`, :func:`continuo.trace` or from a model.
+    It is called as a Python function is, and solvers run it in compiled code: without the interpreter, from
+    any number of threads, with exact Jacobians. Made by :func:`continuo.expression`, :func:`continuo.trace`
+    or from a model.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ class RightHandSide:
     name : str
         What messages call the text.
     native : {'auto', 'always', 'never'}
-        When the equations become machine code: as soon as that pays, at once, or not at all. The results are the same
-        to the bit.
+        When the equations become machine code: as soon as that pays, at once, or not at all. The results are
+        the same to the bit.
 
     Attributes
     ----------
@@ -71,8 +72,8 @@ class RightHandSide:
     Raises
     ------
     ValueError
-        Where the text is no model, with the messages that the command shows, or is more than equations: where it has
-        events, modes, algebraic equations, bodies.
+        Where the text is no model, with the messages that the command shows, or is more than equations: where
+        it has events, modes, algebraic equations, bodies.
     """
 
     def __init__(self, text: str, name: str = "equations", native: str = "auto") -> None:
@@ -106,7 +107,7 @@ class RightHandSide:
 
     @property
     def native(self) -> dict[str, Any]:
-        """How many functions were `compiled` or `loaded` as machine code, and the `trouble` that there was."""
+        """How many functions were `compiled` or `loaded` as machine code, and the `trouble` there was."""
         return self._compiled.native
 
     @property
@@ -184,8 +185,10 @@ class RightHandSide:
                 known = ", ".join(self._base.parameters) or "none at all"
                 raise KeyError(f"there is no parameter {name!r}; there are: {known}")
             if np.ndim(value) != 0:
-                raise ValueError(f"the parameter {name!r} is a number, not an array of shape {np.shape(value)}")
-        return {name: float(value) for name, value in values.items()}  # type: ignore[arg-type]  # numbers, see above
+                raise ValueError(
+                    f"the parameter {name!r} is a number, not an array of shape {np.shape(value)}"
+                )
+        return {name: float(value) for name, value in values.items()}  # type: ignore[arg-type]  # see above
 
     def _set_parameters(self, values: Parameters) -> None:
         settings = {**self._settings, **self._flat(values)}
@@ -207,7 +210,8 @@ class RightHandSide:
         return _restored, (type(self), self._state_for_pickle())
 
     def _state_for_pickle(self) -> dict[str, Any]:
-        state = {key: value for key, value in self.__dict__.items() if key not in ("_compiled", "_base", "_native")}
+        compiled = ("_compiled", "_base", "_native")
+        state = {key: value for key, value in self.__dict__.items() if key not in compiled}
         return {**state, "text": self._base.text}
 
     def __repr__(self) -> str:
@@ -253,9 +257,10 @@ def expression(equations: str | Sequence[str], native: str = "auto", **parameter
     Parameters
     ----------
     equations : str or sequence of str
-        Either equations for named states, separated by semicolons or lines, ``"x'' = -k/m*x"``: y has the states in
-        their order, here x and x'. Or a sequence of expressions, one for each component, which read the components as
-        ``y[0]``, ``y[1]``, ...: ``["y[1]", "-k*y[0]"]``. A name may be defined before: ``"let r = hypot(x, y); ..."``.
+        Either equations for named states, separated by semicolons or lines, ``"x'' = -k/m*x"``: y has the
+        states in their order, here x and x'. Or a sequence of expressions, one for each component, which read
+        the components as ``y[0]``, ``y[1]``, ...: ``["y[1]", "-k*y[0]"]``. A name may be defined before:
+        ``"let r = hypot(x, y); ..."``.
     native : {'auto', 'always', 'never'}
         When the equations become machine code.
     **parameters : float

@@ -54,10 +54,10 @@ def trace(
 ) -> Traced | Callable[[Function], Traced]:
     """Calls `f` once with symbolic arguments, and makes equations of what it computes.
 
-    The result takes the place of `f`: solvers run it in compiled code, without the interpreter, and with the exact
-    Jacobian. Loops, indexing and NumPy's elementwise functions work; a branch that depends on values of t, y or a
-    parameter is written ``continuo.where(condition, a, b)``. What cannot be traced is a :class:`TraceError` that says
-    what to write.
+    The result takes the place of `f`: solvers run it in compiled code, without the interpreter, and with the
+    exact Jacobian. Loops, indexing and NumPy's elementwise functions work; a branch that depends on values of
+    t, y or a parameter is written ``continuo.where(condition, a, b)``. What cannot be traced is a
+    :class:`TraceError` that says what to write.
 
     Parameters
     ----------
@@ -66,15 +66,16 @@ def trace(
     n : int
         The number of components of y. It may be left out where `y0` is given.
     args : sequence or mapping, optional
-        Further arguments of `f`, or keyword arguments. Floats and arrays of floats become parameters, whose values can
-        be changed without tracing again; all else (integers, strings, functions) is handed over as it is.
+        Further arguments of `f`, or keyword arguments. Floats and arrays of floats become parameters, whose
+        values can be changed without tracing again; all else (integers, strings, functions) is handed over as
+        it is.
     y0 : array_like, shape (n,), optional
         A state near which `f` is compared with its equations; the initial values of ``.model``.
     native : {'auto', 'always', 'never'}
         When the equations become machine code.
     check : bool
-        Whether `f` is compared with its equations at random points. A function whose result depends on more than its
-        arguments, or on values in a way that tracing does not see, is found so.
+        Whether `f` is compared with its equations at random points. A function whose result depends on more
+        than its arguments, or on values in a way that tracing does not see, is found so.
 
     Returns
     -------
@@ -83,8 +84,8 @@ def trace(
     Raises
     ------
     TraceError
-        Where `f` needs a value that is not known, calls a function that has no counterpart, returns anything but n
-        numbers, or differs from its equations.
+        Where `f` needs a value that is not known, calls a function that has no counterpart, returns anything
+        but n numbers, or differs from its equations.
 
     Examples
     --------
@@ -105,7 +106,9 @@ def trace(
     if n is None:
         raise TypeError("trace needs n, the number of components of y: trace(f, n)")
     if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
-        raise TypeError(f"n is {n!r}; it must be the number of components of y (y0 is given by its name, y0=...)")
+        raise TypeError(
+            f"n is {n!r}; it must be the number of components of y (y0 is given by its name, y0=...)"
+        )
     if n < 1:
         raise ValueError(f"n is {n}; there must be a component")
     if start is not None and start.shape != (n,):
@@ -161,19 +164,23 @@ class Traced(RightHandSide):
             return ()
         order = self._arguments
         if len(args) > len(order):
-            raise TypeError(f"{len(args)} arguments; f was traced with {len(order)}: {', '.join(order) or 'none'}")
+            raise TypeError(
+                f"{len(args)} arguments; f was traced with {len(order)}: {', '.join(order) or 'none'}"
+            )
         given = {**dict(zip(order, args)), **options}
         for name, value in given.items():
             if name in self._fixed and not _equal(value, self._fixed[name]):
                 raise TypeError(
-                    f"{name} is {value!r}, but f was traced with {self._fixed[name]!r}, which is no float: trace it again"
+                    f"{name} is {value!r}, but f was traced with {self._fixed[name]!r}, which is "
+                    "no float: trace it again"
                 )
             if name not in order:
                 raise TypeError(f"f was traced without an argument {name!r}")
         return tuple(given.get(name, self._parameter(name)) for name in self._places)
 
     def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
-        """The compiled functions for the solvers, with the parameters as they are now, or with these arguments."""
+        """The compiled functions for the solvers, with the parameters as they are now, or with these
+        arguments."""
         return super().__continuo_native__(self._in_order(tuple(args), {}) if args else ())
 
     def _parameter_names(self) -> list[str]:
@@ -181,7 +188,9 @@ class Traced(RightHandSide):
 
     def _parameter(self, name: str) -> Any:
         if name not in self._places:
-            raise KeyError(f"there is no parameter {name!r}; there are: {', '.join(self._places) or 'none at all'}")
+            raise KeyError(
+                f"there is no parameter {name!r}; there are: {', '.join(self._places) or 'none at all'}"
+            )
         shape, names = self._places[name]
         values = self._compiled.parameters
         return values[names[0]] if shape is None else np.array([values[n] for n in names]).reshape(shape)
@@ -213,11 +222,12 @@ class Traced(RightHandSide):
         if self.function is None:
             raise RuntimeError("the Python function was left behind when this was pickled")
         values = {name: self._parameter(name) for name in self._places}
-        _compare_at(self, _Call.again(self.function, self._arguments, values, self._fixed), t, np.asarray(y, float))
+        call = _Call.again(self.function, self._arguments, values, self._fixed)
+        _compare_at(self, call, t, np.asarray(y, float))
 
 
 class _Call:
-    """How f is called: with which names, which of its arguments are parameters, and which stay as they are."""
+    """How f is called: by which names, which of its arguments are parameters, and which stay."""
 
     def __init__(self, f: Function, args: Sequence[Any] | Mapping[str, Any]) -> None:
         self.f = f
@@ -277,7 +287,8 @@ def _is_parameter(name: str, value: Any) -> bool:
         return False
     if size > _LARGEST_ARRAY:
         raise ValueError(
-            f"the argument {name} has {size} numbers, each of which would be a parameter; let f read it from outside "
+            f"the argument {name} has {size} numbers, each of which would be a parameter; let f "
+            "read it from outside "
             "of its arguments, so that they are constants"
         )
     if not np.all(np.isfinite(value)):
@@ -325,7 +336,9 @@ def _results(value: Any, n: int) -> list[Expression]:
     if array.ndim == 0:
         array = array.reshape(1)
     if array.shape != (n,):
-        raise TraceError(f"f returned an array of the shape {array.shape}; dy/dt of {n} components has the shape ({n},)")
+        raise TraceError(
+            f"f returned an array of the shape {array.shape}; dy/dt of {n} components has the shape ({n},)"
+        )
     for i, entry in enumerate(array):
         if entry is None:
             raise TraceError(f"f returned an array whose entry {i} was never set")
@@ -333,7 +346,7 @@ def _results(value: Any, n: int) -> list[Expression]:
 
 
 def _writing_hint() -> str:
-    return "; a function that writes to an array f(t, y, dydt) is traced by one that makes it with np.empty_like(y)"
+    return "; of a function f(t, y, dydt) that writes to an array, make it by np.empty_like(y) and return it"
 
 
 def _entry(i: int, value: Any) -> Expression:
@@ -360,7 +373,7 @@ def _text(call: _Call, results: list[Expression], n: int, y0: NDArray[np.float64
     return "\n".join([*lines, "run 0..1", ""])
 
 
-# ---- comparison with f ------------------------------------------------------------------------------------------------
+# ---- comparison with f -------------------------------------------------------------------------------------
 
 _POINTS = 12
 _ROUNDING = 1e-12  # by this part y is moved, to see how much of a difference rounding may make
@@ -381,7 +394,8 @@ def _compare(traced: Traced, call: _Call, y0: NDArray[np.float64] | None) -> Non
         compared += _compare_at(traced, call, t, y)
     if compared == 0:
         warnings.warn(
-            f"{call.name} gave no finite numbers at any of {_POINTS} random points, so that it was not compared with its "
+            f"{call.name} gave no finite numbers at any of {_POINTS} random points, so that it "
+            "was not compared with its "
             "equations; give a state where it is defined: trace(f, y0=...)",
             stacklevel=4,
         )
@@ -394,7 +408,7 @@ def _compare_at(traced: Traced, call: _Call, t: float, y: NDArray[np.float64]) -
         try:
             values = {name: value for name, value in call.values.items()}
             expected = np.asarray(call(t, y.copy(), values), dtype=np.float64).reshape(traced.n)
-        except (ArithmeticError, ValueError, TypeError):  # outside of its domain; complex numbers are a TypeError
+        except (ArithmeticError, ValueError, TypeError):  # outside of its domain; complex: a TypeError
             return False
         if not np.all(np.isfinite(expected)):
             return False
@@ -405,8 +419,10 @@ def _compare_at(traced: Traced, call: _Call, t: float, y: NDArray[np.float64]) -
     if np.any(wrong):
         i = int(np.argmax(wrong))
         raise TraceError(
-            f"component {i} of f is {expected[i]:.17g} at t = {t:.17g}, y = {y.tolist()}, but its equations give "
-            f"{found[i]:.17g}: f depends on more than its arguments, or on values in a way that tracing does not see "
+            f"component {i} of f is {expected[i]:.17g} at t = {t:.17g}, y = {y.tolist()}, but "
+            "its equations give "
+            f"{found[i]:.17g}: f depends on more than its arguments, or on values in a way that "
+            "tracing does not see "
             "(a value that was kept from an earlier call, `try` around a comparison, a random number)"
         )
     return True
@@ -414,6 +430,8 @@ def _compare_at(traced: Traced, call: _Call, t: float, y: NDArray[np.float64]) -
 
 def _equal(a: Any, b: Any) -> bool:
     try:
-        return bool(np.all(a == b)) if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) else bool(a == b)
+        return bool(
+            np.all(a == b)) if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) else bool(a == b
+        )
     except (TypeError, ValueError):
         return a is b

@@ -45,9 +45,10 @@ class Contacts(NamedTuple):
 class World:
     """Bodies, walls and forces, and the motion that moves them.
 
-    The units are yours, as long as they belong together. `positions`, `velocities`, `spins` and `orientations` are views
-    without copies: what is written there is true from the next move on. When bodies are added or removed, views that
-    were taken before keep their numbers, and can no longer be written; the attribute gives the new one.
+    The units are yours, as long as they belong together. `positions`, `velocities`, `spins` and
+    `orientations` are views without copies: what is written there is true from the next move on. When bodies
+    are added or removed, views that were taken before keep their numbers, and can no longer be written; the
+    attribute gives the new one.
 
     Parameters
     ----------
@@ -160,8 +161,8 @@ class World:
         Raises
         ------
         ValueError
-            For a radius or a mass that is not positive, a number that is not finite, a wrong shape. Nothing is added
-            then.
+            For a radius or a mass that is not positive, a number that is not finite, a wrong shape. Nothing
+            is added then.
         """
         d = self._dimension
         centres = _numbers("position", position)
@@ -195,11 +196,14 @@ class World:
             raise ValueError("groups are whole numbers from 0 to 31")
         is_fixed = [bool(fixed)] * n if isinstance(fixed, bool) else _fixed(fixed, n)
         self._retire()
-        handles = self._inner.add(np.ascontiguousarray(rows[:, :-1]), [mass is not None] * n, is_fixed, groups)
+        handles = self._inner.add(
+            np.ascontiguousarray(rows[:, :-1]), [mass is not None] * n, is_fixed, groups
+        )
         return handles[0] if one else np.array(handles, dtype=np.int64)
 
     def remove(self, body: int) -> None:
-        """Removes a body and the springs at it. The last body takes its row. KeyError where there is no such body."""
+        """Removes a body and the springs at it. The last body takes its row. KeyError where there is no such
+        body."""
         self._retire()
         self._inner.remove(_handle(body))
 
@@ -251,7 +255,8 @@ class World:
 
     @property
     def spins(self) -> Floats:
-        """The angular velocities in radians per time: a view that can be written, shape (N, 3), in the plane (N,)."""
+        """The angular velocities in radians per time: a view that can be written, shape (N, 3), in the plane
+        (N,)."""
         return self._view(self._inner.spins())
 
     @spins.setter
@@ -260,7 +265,8 @@ class World:
 
     @property
     def orientations(self) -> Floats:
-        """Unit quaternions (w, x, y, z), shape (N, 4), in the plane angles, shape (N,): a view that can be written."""
+        """Unit quaternions (w, x, y, z), shape (N, 4), in the plane angles, shape (N,): a view that can be
+        written."""
         return self._view(self._inner.orientations())
 
     @orientations.setter
@@ -351,7 +357,8 @@ class World:
         stiffness: float = 1.0,
         damping: float = 0.0,
     ) -> None:
-        """A spring from body `a` to body `b`, or to a point: stiffness*(distance - rest_length) + damping*its rate."""
+        """A spring from body `a` to body `b`, or to a point: stiffness*(distance - rest_length) + damping*its
+        rate."""
         if isinstance(b, (int, np.integer)):
             self._inner.add_spring(_handle(a), _handle(b), None, rest_length, stiffness, damping)
         else:
@@ -496,7 +503,8 @@ class World:
         return self._inner.save()
 
     def restore(self, state: bytes) -> None:
-        """Takes over the state of a snapshot. ValueError or RuntimeError where the bytes are none; nothing changes then."""
+        """Takes over the state of a snapshot. ValueError or RuntimeError where the bytes are none; nothing
+        changes then."""
         self._retire()
         self._inner.restore(bytes(state))
 
@@ -533,7 +541,8 @@ class World:
         return ax
 
     def __repr__(self) -> str:
-        return f"<continuo.World: {len(self)} bodies in {self._dimension} dimensions, {self.motion}, t={self.time:.6g}>"
+        bodies = f"{len(self)} bodies in {self._dimension} dimensions"
+        return f"<continuo.World: {bodies}, {self.motion}, t={self.time:.6g}>"
 
 
 def _restored(dimension: Literal[2, 3], settings: dict[str, Any], state: bytes) -> World:
@@ -585,7 +594,9 @@ def _columns(name: str, value: ArrayLike, n: int, width: int) -> Floats:
     else:
         allowed = ((), (n,), (n, 1))
     if shape not in allowed:
-        raise ValueError(f"{name} has the shape {shape}; it must be {' or '.join(map(str, allowed))} for {n} bodies")
+        raise ValueError(
+            f"{name} has the shape {shape}; it must be {' or '.join(map(str, allowed))} for {n} bodies"
+        )
     return values[:, None] if width == 1 and values.ndim == 1 else values
 
 

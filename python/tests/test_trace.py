@@ -1,7 +1,7 @@
 """Traced functions and expressions: their values and Jacobians against NumPy, and what is refused.
 
-The class that tracing claims: functions of t, y and parameters made by Python's arithmetic, NumPy's elementwise
-functions, products of matrices, slices and loops, with choices by continuo.where.
+The class that tracing claims: functions of t, y and parameters made by Python's arithmetic, NumPy's
+elementwise functions, products of matrices, slices and loops, with choices by continuo.where.
 """
 
 import math
@@ -55,7 +55,7 @@ TWO: dict[str, tuple[Callable[[Any, Any], Any], Callable[[Any, Any], tuple[Any, 
     "hypot": (np.hypot, lambda a, b: (1, 1), 4),
     "arctan2": (lambda a, b: np.arctan2(a, np.abs(b) + 0.5), lambda a, b: (2, 2), 4),
     "where": (lambda a, b: continuo.where(a < b, a * 2, b - 1), lambda a, b: (2, 1), 1),
-    "both": (lambda a, b: continuo.where((a > 0) & ~(b >= 1), a, 3 * b), lambda a, b: (1, 3), 1),
+    "both": (lambda a, b: continuo.where((a > 0) & np.logical_not(b >= 1), a, 3 * b), lambda a, b: (1, 3), 1),
     "either": (lambda a, b: continuo.where((a > 0) | (b > 1), b, a), lambda a, b: (1, 1), 0),
     "clip": (lambda a, b: np.clip(a, -0.5, 0.75) + b, lambda a, b: (1, 1), 1),
 }
@@ -80,10 +80,13 @@ def random_tree(random: np.random.Generator, depth: int, n: int) -> Tree:
     kind = random.integers(10)
     if depth == 0 or kind == 0:
         leaf = random.integers(n + 2)
-        return ("constant", float(random.normal())) if leaf == n + 1 else ("t",) if leaf == n else ("y", int(leaf))
+        if leaf == n + 1:
+            return ("constant", float(random.normal()))
+        return ("t",) if leaf == n else ("y", int(leaf))
     if kind < 5:
         return (str(random.choice(list(ONE))), random_tree(random, depth - 1, n))
-    return (str(random.choice(list(TWO))), random_tree(random, depth - 1, n), random_tree(random, depth - 1, n))
+    left, right = (random_tree(random, depth - 1, n) for _ in range(2))
+    return (str(random.choice(list(TWO))), left, right)
 
 
 def value_of(tree: Tree, t: Any, y: Any) -> Any:
@@ -138,6 +141,11 @@ def test_functions_with_jumps(name: str) -> None:
             continue  # a multiple of a number that is no binary fraction: rounding decides
         expected = JUMPS[name](np.float64(x))
         assert abs(f(0, [x])[0] - expected) <= 4e-16 * (1 + abs(x)), x
+
+
+def test_not() -> None:
+    f = continuo.trace(lambda t, y: [continuo.where(~(y[0] > 1) | (y[0] > 2), 5.0, 6.0)], 1)
+    assert [f(0, [x])[0] for x in (0.0, 1.5, 3.0)] == [5, 6, 5]
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -222,7 +230,9 @@ def test_the_model_is_a_text_that_gives_the_same() -> None:
 
 
 def test_names_that_the_language_has_for_itself() -> None:
-    traced = continuo.trace(lambda t, run, t_, when, σ: [when * run[0] + σ * t_, t * run[1]], 2, args=(1.0, 2.0, 3.0))
+    traced = continuo.trace(
+        lambda t, run, t_, when, σ: [when * run[0] + σ * t_, t * run[1]], 2, args=(1.0, 2.0, 3.0)
+    )
     assert np.array_equal(traced(2, [5, 7]), [13, 14])
     assert list(traced.parameters) == ["t_", "when", "σ"]
 
@@ -285,6 +295,7 @@ def test_what_cannot_be_traced_says_what_to_write() -> None:
     refuse(lambda t, y: [max(y), 0.0], "np.maximum")
     refuse(lambda t, y: [y[int(y[0])], 0.0], "np.floor")
     refuse(lambda t, y: [[1, 2][y[0]], 0.0], "index")
+    refuse(lambda t, y: [continuo.where((y[0] > 0) & ~True, 1.0, 0.0), 0.0], "no condition")
     refuse(lambda t, y: np.log1p(y), r"np.log\(1 \+ x\)")
     refuse(lambda t, y: np.fft.fft(y), "np.fft")
     refuse(lambda t, y: np.linalg.solve(np.eye(2), y), "np.solve cannot be traced")
@@ -401,7 +412,9 @@ def test_solvers_take_them_with_arguments() -> None:
     end = continuo.solve_ivp(traced, (0, 1), [1, 0], rtol=1e-10, atol=1e-12).y[:, -1]
     assert np.allclose(end, [math.cos(1), -math.sin(1)], atol=1e-8)
     rising: Any = lambda t, y, k: y[0] - 0.5  # noqa: E731
-    result = continuo.solve_ivp(traced, (0, 1), [1, 0], "Radau", rtol=1e-8, atol=1e-10, args=(4.0,), events=rising)
+    result = continuo.solve_ivp(
+        traced, (0, 1), [1, 0], "Radau", rtol=1e-8, atol=1e-10, args=(4.0,), events=rising
+    )
     assert np.allclose(result.y[:, -1], [math.cos(2), -2 * math.sin(2)], atol=1e-6)
     assert abs(result.t_events[0][0] - math.pi / 6) < 1e-6
     assert traced.parameters["k"] == 1
@@ -419,7 +432,8 @@ def test_solvers_take_them_with_arguments() -> None:
 def test_models_of_equations_are_functions(tmp_path: Any) -> None:
     (tmp_path / "pull.csv").write_text("x,y\n0,0\n1,2\n2,2\n")
     file = tmp_path / "spring.sim"
-    file.write_text('table pull from "pull.csv"\nparam k = 1\nx\'\' = -k*interp(pull, x)\nx(0) = 1; x\'(0) = 0\nrun 0..1\n')
+    equations = "x'' = -k*interp(pull, x)\nx(0) = 1; x'(0) = 0\nrun 0..1\n"
+    file.write_text('table pull from "pull.csv"\nparam k = 1\n' + equations)
     model = continuo.Model(file)
     model.k = 3
     f = model.right_hand_side()
@@ -427,7 +441,9 @@ def test_models_of_equations_are_functions(tmp_path: Any) -> None:
     assert f.states == ["x", "x'"] and f.parameters["k"] == 3
     assert np.array_equal(f(0, [0.5, 7]), [7, -3])
     end = continuo.solve_ivp(model, (0, 0.1), [0.5, 0], rtol=1e-10, atol=1e-12).y[:, -1]
-    assert np.allclose(end, [0.5 * math.cos(math.sqrt(8) * 0.1), -0.5 * math.sqrt(8) * math.sin(math.sqrt(8) * 0.1)])
+    assert np.allclose(
+        end, [0.5 * math.cos(math.sqrt(8) * 0.1), -0.5 * math.sqrt(8) * math.sin(math.sqrt(8) * 0.1)]
+    )
     assert np.array_equal(f.initial_state, [1, 0])
     bouncing = continuo.Model(text="h' = -1; h(0) = 1\nwhen h falls through 0 { h := 1 }\nrun 0..1")
     with pytest.raises(continuo.ModelError, match="it has events"):

@@ -31,7 +31,8 @@ def test_a_ball_returns_to_its_height() -> None:
         assert abs(world.positions[0, 2] - 10) < 1e-9
         assert len(world.contacts.time) in (1, 9, 26)
     assert np.allclose(world.contacts.time[:1], (2 * 10 + 1) * fall, rtol=1e-12)
-    assert set(world.contacts.change) == {"impact"} and set(world.contacts.wall) == {0} and set(world.contacts.b) == {-1}
+    assert set(world.contacts.change) == {"impact"}
+    assert set(world.contacts.wall) == {0} and set(world.contacts.b) == {-1}
     assert abs(world.energy - world.masses[0] * G * 10) < 1e-9
 
 
@@ -53,7 +54,8 @@ def test_elastic_gas_keeps_energy_and_momentum(seed: int, dimension: Any) -> Non
     assert len(world.contacts.time) > 10
     assert abs(world.energy - energy) < 1e-12 * energy
     assert np.allclose(world.momentum, momentum, atol=1e-12)
-    gaps = np.linalg.norm(world.positions[:, None] - world.positions[None], axis=-1) - radii[:, None] - radii[None]
+    distances = np.linalg.norm(world.positions[:, None] - world.positions[None], axis=-1)
+    gaps = distances - radii[:, None] - radii[None]
     assert np.min(gaps[~np.eye(len(cells), dtype=bool)]) > -1e-9
 
 
@@ -188,10 +190,12 @@ def test_bodies_have_names_that_stay() -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        {"radius": -1.0}, {"radius": 0.0}, {"radius": np.nan}, {"mass": -1.0}, {"mass": 0.0}, {"mass": np.inf},
+        {"radius": -1.0}, {"radius": 0.0}, {"radius": np.nan},
+        {"mass": -1.0}, {"mass": 0.0}, {"mass": np.inf},
         {"position": [0, 0]}, {"position": [[[0, 0, 0]]]}, {"position": [np.nan, 0, 0]}, {"position": 1.0},
         {"velocity": [1, 2]}, {"velocity": [np.inf, 0, 0]}, {"spin": [1, 2]}, {"restitution": 1.5},
-        {"restitution": -0.1}, {"friction": -1.0}, {"rolling_resistance": np.nan}, {"group": 32}, {"group": 0.5},
+        {"restitution": -0.1}, {"friction": -1.0}, {"rolling_resistance": np.nan},
+        {"group": 32}, {"group": 0.5},
         {"radius": [1.0, 2.0]}, {"density": 0.0},
     ],
 )  # fmt: skip
@@ -277,8 +281,9 @@ def test_a_copy_goes_on_to_the_same_bits(motion: Any) -> None:
     random = np.random.default_rng(1)
     world = World(2, gravity=1.0, motion=motion)
     world.add_container([0, 0], [20, 20], restitution=0.9)
-    world.add(random.permutation(np.stack(np.meshgrid(range(1, 20, 2), range(1, 20, 2)), -1).reshape(-1, 2)) * 1.0,
-              random.uniform(0.3, 0.9, 100), velocity=random.normal(size=(100, 2)), restitution=0.9)  # fmt: skip
+    places = random.permutation(np.stack(np.meshgrid(range(1, 20, 2), range(1, 20, 2)), -1).reshape(-1, 2))
+    velocities = random.normal(size=(100, 2))
+    world.add(places, random.uniform(0.3, 0.9, 100), velocity=velocities, restitution=0.9)
     world.advance_to(1.0)
     copies = [world.copy(), pickle.loads(pickle.dumps(world))]
     for each in (world, *copies):

@@ -40,8 +40,8 @@ for name, result, arguments in [
     ("get_state", c_int, [c_void_p, POINTER(c_double), c_size_t]),
     ("set_state", c_int, [c_void_p, POINTER(c_double), c_size_t]),
     ("event", c_int, [c_void_p, c_size_t, POINTER(c_double), POINTER(c_char_p)]),
-    ("integrate", c_int, [FUNCTION, c_void_p, c_size_t, POINTER(c_double), POINTER(c_double), c_size_t, c_char_p,
-                          c_double, c_double, POINTER(c_double), c_char_p, c_size_t]),
+    ("integrate", c_int, [FUNCTION, c_void_p, c_size_t, POINTER(c_double), POINTER(c_double), c_size_t,
+                          c_char_p, c_double, c_double, POINTER(c_double), c_char_p, c_size_t]),
 ]:  # fmt: skip
     function = getattr(library, "continuo_" + name)
     function.restype, function.argtypes = result, arguments

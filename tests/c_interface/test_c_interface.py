@@ -1,4 +1,5 @@
-"""continuo.h by ctypes: models loaded, run and stepped, errors as values, functions integrated, misuse refused."""
+"""continuo.h by ctypes: models loaded, run and stepped, errors as values, functions integrated, misuse
+refused."""
 
 import ctypes
 import math
@@ -177,7 +178,9 @@ def test_a_motion_step_by_step():
 
 
 def test_parameters_and_states_changed_on_the_way():
-    model = Model("param g = 10\nh'' = -g\nh(0) = 5;  h'(0) = 0\nwhen h falls through 0 { h' := -h' }\nrun 0..1")
+    model = Model(
+        "param g = 10\nh'' = -g\nh(0) = 5;  h'(0) = 0\nwhen h falls through 0 { h' := -h' }\nrun 0..1"
+    )
     assert model.start() == OK
     assert model.advance(0.9) == OK  # whose step may have gone beyond the landing at 1
     height, speed = model.state()
@@ -256,7 +259,9 @@ def test_functions_of_other_languages():
 
 
 def test_functions_that_refuse_or_fail():
-    code, rows, message = integrate(lambda t, y: [1.0] if t < 0.5 else None, [0.0], [0.0, 0.2, 1.0], "rk4", 1e-6)
+    code, rows, message = integrate(
+        lambda t, y: [1.0] if t < 0.5 else None, [0.0], [0.0, 0.2, 1.0], "rk4", 1e-6
+    )
     assert code != OK
     code, rows, message = integrate(lambda t, y: [1.0] if t < 0.5 else None, [0.0], [0.0, 0.2, 1.0], "dop853")
     assert code == FAILED and "f has ended" in message and math.isnan(rows[2][0])
@@ -302,7 +307,8 @@ def test_a_program_in_c(compiler, tmp_path):
     if words[0] == "g++":
         source = tmp_path / "program.cpp"
         source.write_text((ROOT / "tests/c_interface/program.c").read_text())
-    assert compile_and_run(words, tmp_path, source) == "5 m, -10 m/s\n0 0\n1.000000 -0.000000\n0.540302 -0.841471\n"
+    output = "5 m, -10 m/s\n0 0\n1.000000 -0.000000\n0.540302 -0.841471\n"
+    assert compile_and_run(words, tmp_path, source) == output
 
 
 def test_the_programs_of_the_page(tmp_path):
