@@ -107,7 +107,7 @@ void TwoPointEquations<Number>::evaluate_points(std::span<const Number> p) {
 template <class Number>
 void TwoPointEquations<Number>::evaluate_unknown(const std::vector<bool>& is_known) {
   set_nodes(z_);
-  for (const std::size_t first : {0, 1}) {
+  for (std::size_t first = 0; first < 2; ++first) {
     if (first == 1) set_middles();
     begin_points();
     for (std::size_t q = first; q < points_.size(); q += 2)
@@ -152,7 +152,8 @@ void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
 template <class Number>
 void TwoPointEquations<Number>::evaluate_equations(const std::vector<Number>& z) {
   for (std::size_t k = 0; k < intervals(); ++k) {
-    const auto first = at(z, k), last = at(z, k + 1), left = at(equations_, k);
+    const auto first = at(z, k), last = at(z, k + 1);
+    const auto left = at(equations_, k);
     const auto f_first = f_at_node(k), middle = f_in_middle(k), f_last = f_at_node(k + 1);
     for (std::size_t i = 0; i < n_; ++i)
       left[i] = last[i] - first[i] - (f_first[i] + f_last[i] + middle[i] * 4) * (length(k) / 6);
@@ -331,7 +332,7 @@ double TwoPointEquations<Number>::relative_error(double tolerance) {
 
 template <class Number>
 bool TwoPointEquations<Number>::is_finite(TwoPointSolution<Number>& note) const {
-  for (const std::size_t first : {0, 1}) {  // the middles follow from the nodes
+  for (std::size_t first = 0; first < 2; ++first) {  // the middles follow from the nodes
     for (std::size_t q = first; q < points_.size(); q += 2) {
       for (std::size_t i = 0; i < n_; ++i) {
         if (boundary::is_finite(at(f_, q)[i])) continue;

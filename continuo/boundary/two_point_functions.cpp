@@ -65,7 +65,7 @@ template <class Number>
 void TwoPointFunctions<Number>::derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p,
                                                    std::span<Number> f) {
   const std::size_t n = size();
-  for (const std::size_t first : {0, 1}) {
+  for (std::size_t first = 0; first < 2; ++first) {
     std::vector<double> some_x;
     std::vector<Number> some_y;
     for (std::size_t q = first; q < x.size(); q += 2) {
