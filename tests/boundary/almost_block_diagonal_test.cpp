@@ -1,9 +1,11 @@
 // Almost block diagonal systems against a dense elimination with exchange of rows, and where that itself fails.
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <random>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -115,9 +117,9 @@ void expect_solution(unsigned seed, const Sizes& s) {
 
 TEST(AlmostBlockDiagonal, SolvesRandomSystems) {
   unsigned seed = 0;
-  for (const std::size_t n : {1, 2, 5})
-    for (const std::size_t k : {0, 1, 3})
-      for (const std::size_t intervals : {1, 2, 3, 12}) {
+  for (const std::size_t n : std::vector<std::size_t>{1, 2, 5})
+    for (const std::size_t k : std::vector<std::size_t>{0, 1, 3})
+      for (const std::size_t intervals : std::vector<std::size_t>{1, 2, 3, 12}) {
         expect_solution<double>(++seed, {n, k, intervals});
         expect_solution<ComplexNumber<double>>(++seed, {n, k, intervals});
       }
@@ -154,7 +156,7 @@ TEST(AlmostBlockDiagonal, KnowsSingularMatrices) {
   // y' = 0 with y_0(0) and y_0(1) given twice.
   AlmostBlockDiagonal<double> system(2, 0, 4);
   for (std::size_t i = 0; i < 4; ++i)
-    for (const std::size_t e : {0, 3}) system.left(i)[e] = -1, system.right(i)[e] = 1;
+    for (const std::size_t e : std::vector<std::size_t>{0, 3}) system.left(i)[e] = -1, system.right(i)[e] = 1;
   system.first_condition()[0] = 1;
   system.last_condition()[2] = 1;
   EXPECT_FALSE(system.factor());

@@ -1,8 +1,8 @@
 // Two-point problems in C++: closed forms, real and complex, and the endings.
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
