@@ -1,6 +1,6 @@
 """odeint and the loop of ode beside SciPy's: time and true error, in one run.
 
-PYTHONPATH=build/python python3 bench/python/ode.py
+OPENBLAS_NUM_THREADS=1 PYTHONPATH=build/python python3 bench/python/ode.py
 
 The compiled functions need a C compiler, cc.
 """

@@ -1,6 +1,6 @@
 """solve_bvp beside SciPy's: time, nodes and true error, at the same tolerance, in one run.
 
-PYTHONPATH=build/python python3 bench/python/solve_bvp.py
+OPENBLAS_NUM_THREADS=1 PYTHONPATH=build/python python3 bench/python/solve_bvp.py
 """
 
 from collections.abc import Callable
