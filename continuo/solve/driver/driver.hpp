@@ -145,6 +145,7 @@ class Driver {
     }
     if (std::equal(x.data(), x.data() + dimension(x), x_.data()) && (steps().jumped() || t_ == steps().end())) return;
     const bool keeps_history = t_ == steps().end() && shifted_.empty() && steps().is_near_end(x, options_);
+    keep_last_step();
     x_ = x;
     keeps_history ? correct() : restart();
   }
@@ -174,6 +175,7 @@ class Driver {
   /// Changes the system from outside, for example a parameter or an input: `change` gets it by reference.
   template <class Change>
   void change_system(Change&& change) {
+    keep_last_step();
     change(steps().system());
     restart();
   }
@@ -292,6 +294,10 @@ class Driver {
     return problem_.emplace(std::move(why));
   }
 
+  // `at` tells of the last step also after a change of the state or of f.
+  void keep_last_step() {
+    if (statistics().steps > 0) steps().dense_output();
+  }
   void restart() {
     problem_.reset();
     settle_algebraic();
@@ -393,7 +399,10 @@ class Driver {
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
         solved_to_rounding_ = true;
-        if (is_new_step) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
+        if (is_new_step) {
+          steps().dense_output();  // computed while the state and f are those of the step, for `at`
+          logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
+        }
       } else {
         offset = to;
         t_ = *tick;
