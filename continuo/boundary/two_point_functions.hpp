@@ -30,7 +30,9 @@ class TwoPointFunctions {
   /// `start` is a, where the singular term is.
   TwoPointFunctions(const TwoPointProblem<Number>& problem, double start) : problem_(problem), start_(start) {}
 
+  /// The number of equations.
   [[nodiscard]] std::size_t size() const { return problem_.size; }
+  /// The number of unknown parameters.
   [[nodiscard]] std::size_t parameters() const { return problem_.parameters; }
   /// f, with the singular term, at the points x.
   void derivative(std::span<const double> x, std::span<const Number> y, std::span<const Number> p, std::span<Number> f);

@@ -4,8 +4,8 @@
 #include <tuple>
 #include <utility>
 
-#include <continuo/foreign/methods/foreign_method.hpp>
 #include <continuo/foreign/foreign_run.hpp>
+#include <continuo/foreign/methods/foreign_method.hpp>
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/solve/steps/first_step.hpp>

@@ -45,17 +45,20 @@ struct ForeignDense {
 class ForeignRecord {
  public:
   using X = std::vector<double>;
+  /// What is to be recorded.
   struct Wanted {
     bool steps = true;            // the state after every step, and on both sides of an event that changes it
     bool dense = false;           // the polynomial of every step
     std::vector<double> times{};  // the states at these times, in the direction of time
   };
+  /// An event, with the state on both sides of it.
   struct Event {
-    std::size_t number;
-    double t;
-    X before, after;
+    std::size_t number;  // in the order of the options
+    double t;            // its time
+    X before, after;     // the state before and after its action
   };
 
+  /// An empty record.
   explicit ForeignRecord(Wanted wanted) : wanted_(std::move(wanted)) {}
 
   std::vector<double> t{}, x{};  // x: row after row
@@ -85,12 +88,13 @@ class ForeignRecord {
     if (wanted_.dense) dense.add_constant(t.empty() ? time : t.front(), time, state);
   }
 
-  // As an observer of the run.
+  /// As an observer of the run: the motion between two times stands.
   template <class Run>
   void on_segment(Run& run, double from, double to) {
     if (!wanted_.times.empty()) save_times(run, to, false);
     if (wanted_.dense) save_piece(run, from, to);
   }
+  /// As an observer: events have fired.
   template <class Run>
   void on_event(Run& run, const EventOccurrence<X>& occurrence) {
     if (!occurred_) before_ = occurrence.before;
@@ -102,6 +106,7 @@ class ForeignRecord {
       if (occurrence.after == occurrence.before) move_to_root(run, events.back());
     }
   }
+  /// As an observer: all events of an instant have acted.
   template <class Run>
   void on_instant(Run& run) {
     if (occurred_ && changed_ && wanted_.steps && (t.empty() || t.back() != run.t())) push(run.t(), before_);
@@ -184,19 +189,27 @@ class ForeignRun {
   virtual bool advance(ForeignRecord& record) = 0;
   /// The same without a record.
   virtual bool advance() = 0;
+  /// The time reached.
   [[nodiscard]] virtual double t() const = 0;
+  /// The state at that time.
   [[nodiscard]] virtual const X& x() const = 0;
+  /// How the run has ended.
   [[nodiscard]] virtual const Outcome<double>& outcome() const = 0;
+  /// The cost so far.
   [[nodiscard]] virtual Statistics statistics() const = 0;
   /// The dense output of the last step, from step_begin() on over step_size().
   [[nodiscard]] virtual std::span<const X> dense_output() = 0;
+  /// The time at which the last step began.
   [[nodiscard]] virtual double step_begin() const = 0;
+  /// The size of the last step.
   [[nodiscard]] virtual double step_size() const = 0;
   /// x at a time of the last step.
   virtual void at(double t, X& x) = 0;
-  /// As the members of Driver.
+  /// As Driver::set_state.
   virtual void set_state(const X& x) = 0;
+  /// Begins anew from the present state, as after a change of what f reads.
   virtual void restart() = 0;
+  /// As Driver::extend_to.
   virtual void extend_to(double to) = 0;
 };
 

@@ -49,19 +49,27 @@ class ForeignSystem {
   explicit ForeignSystem(std::shared_ptr<const ForeignFunctions> functions)
       : functions_(std::move(functions)), derivative_(functions_->derivative) {}
 
+  /// dx/dt, or M dx/dt where there is a mass.
   void operator()(double t, const X& x, X& dxdt) { derivative_.call(t, x.data(), dxdt.data(), derivative_.user); }
 
+  /// Why there is no state of this size; empty where there is.
   [[nodiscard]] std::string size_problem(std::size_t size) const {
     if (size == functions_->size) return {};
     return "f is one of " + std::to_string(functions_->size) + " components, and the state has " + std::to_string(size);
   }
+  /// The name of component i.
   [[nodiscard]] std::string component_name(std::size_t i) const {
     return i < functions_->names.size() ? functions_->names[i] : "y[" + std::to_string(i) + "]";
   }
+  /// The number of pairs of a position and its velocity.
   [[nodiscard]] std::size_t pair_count(std::size_t) const { return functions_->pairs.size(); }
+  /// Pair i.
   [[nodiscard]] PositionVelocity pair(std::size_t i, std::size_t) const { return functions_->pairs[i]; }
+  /// Whether no acceleration reads a velocity.
   [[nodiscard]] bool ignores_velocity(const X&) const { return functions_->ignores_velocity; }
+  /// Whether one of the functions is df/dx, in either form.
   [[nodiscard]] bool gives_jacobian() const { return functions_->jacobian.call || functions_->jacobian_values.call; }
+  /// df/dx row by row, from the entries of the pattern where these are given.
   void jacobian(double t, const X& x, std::span<double> rows) {
     if (functions_->jacobian.call)
       return functions_->jacobian.call(t, x.data(), rows.data(), functions_->jacobian.user);
@@ -71,7 +79,9 @@ class ForeignSystem {
     for (std::size_t j = 0; j < x.size(); ++j)
       for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p) rows[pattern.row(p) * x.size() + j] = values_[p];
   }
+  /// Where df/dx may differ from zero; empty where that is not known.
   [[nodiscard]] const SparsePattern& jacobian_pattern() const { return functions_->pattern; }
+  /// The entries of df/dx in the order of the pattern, from the rows where these are given.
   void jacobian_values(double t, const X& x, std::span<double> values) {
     if (functions_->jacobian_values.call)
       return functions_->jacobian_values.call(t, x.data(), values.data(), functions_->jacobian_values.user);
@@ -82,7 +92,9 @@ class ForeignSystem {
       for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p)
         values[p] = values_[pattern.row(p) * x.size() + j];
   }
+  /// Whether M is not the identity.
   [[nodiscard]] bool has_mass() const { return !functions_->mass.empty(); }
+  /// Entry i of the diagonal of M.
   [[nodiscard]] double mass(std::size_t i) const { return has_mass() ? functions_->mass[i] : 1; }
 
  private:
@@ -96,24 +108,31 @@ class ForeignSystemWithMatrix {
  public:
   using X = std::vector<double>;
 
+  /// The functions must outlive their runs, which share the description of them.
   explicit ForeignSystemWithMatrix(std::shared_ptr<const ForeignFunctions> functions)
       : functions_(std::move(functions)) {}
 
+  /// M dx/dt.
   void operator()(double t, const X& x, X& dxdt) {
     functions_->derivative.call(t, x.data(), dxdt.data(), functions_->derivative.user);
   }
+  /// Why there is no state of this size; empty where there is.
   [[nodiscard]] std::string size_problem(std::size_t size) const {
     if (size == functions_->size && functions_->mass_rows.size() == size * size) return {};
     return "f and its mass are those of " + std::to_string(functions_->size) + " components, and the state has " +
            std::to_string(size);
   }
+  /// The name of component i.
   [[nodiscard]] std::string component_name(std::size_t i) const {
     return i < functions_->names.size() ? functions_->names[i] : "y[" + std::to_string(i) + "]";
   }
+  /// Whether one of the functions is df/dx, row by row.
   [[nodiscard]] bool gives_jacobian() const { return functions_->jacobian.call != nullptr; }
+  /// df/dx row by row.
   void jacobian(double t, const X& x, std::span<double> rows) {
     functions_->jacobian.call(t, x.data(), rows.data(), functions_->jacobian.user);
   }
+  /// M row by row.
   void mass_matrix(std::span<double> rows) const { std::ranges::copy(functions_->mass_rows, rows.begin()); }
 
  private:
