@@ -42,10 +42,25 @@ def metadata() -> str:
     )
 
 
+def place_of_build() -> tuple[Path, list[str]]:
+    """Where to build, and with which options: beside the command where this is the Python that CMake finds there.
+
+    The Python of a virtual environment is that of the distribution, and its path will be gone one day.
+    """
+    distribution = Path("/usr/bin/python3")
+    ours = f"{sys.version_info.major}.{sys.version_info.minor}"
+    if distribution.exists():
+        asked = subprocess.run([distribution, "-c", "import sys; print('%d.%d' % sys.version_info[:2])"],
+                               capture_output=True, text=True, check=False)
+        if asked.stdout.strip() == ours:
+            return ROOT / "build", []
+    return ROOT / f"build-python{ours}", [f"-DPython_EXECUTABLE={sys.executable}"]
+
+
 def build() -> Path:
     """Builds the module and the programs for the Python that runs this; the folder of the build."""
-    folder = ROOT / "build"
-    configure = ["cmake", "-B", str(folder), "-DCONTINUO_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"]
+    folder, options = place_of_build()
+    configure = ["cmake", "-B", str(folder), "-DCONTINUO_PYTHON=ON", *options]
     if not (folder / "build.ninja").exists():
         configure[1:1] = ["--preset", "release", "-DCONTINUO_TESTS=OFF", "-DCMAKE_UNITY_BUILD=ON"]
     targets = ["continuo_python", "continuo", "continuo-studies"]
