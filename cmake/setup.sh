@@ -164,7 +164,7 @@ setup_build() {
       exit 1
     fi
   fi
-  if [[ -n $option ]] && ! quietly "$build/.log" cmake -B "$build" "$option"; then
+  if [[ -n $option ]] && ! quietly "$build/.log" cmake -S "$root" -B "$build" "$option"; then
     say "the build could not be configured"
     exit 1
   fi
