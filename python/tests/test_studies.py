@@ -348,7 +348,7 @@ def test_ctrl_c_ends_the_child_and_a_sweep_can_be_resumed() -> None:
     script = """
         import os, signal
         from continuo import Interrupted, Model
-        model = Model(text="x'' = -x; x(0) = 1; x'(0) = 0\\nrun 0..1000 output 500 method rk4 step 0.01")
+        model = Model(text="x'' = -x; x(0) = 1; x'(0) = 0\\nrun 0..1000 output 500 method rk4 step 0.002")
         pressed = []
         def press(part):
             if part > 0 and not pressed:
