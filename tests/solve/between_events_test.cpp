@@ -45,6 +45,18 @@ class BetweenEvents : public testing::Test {
     return worst;
   }
 
+  /// Advances the run to its end, and holds each stretch against its parabola.
+  void follow(Run& run) const {
+    Height start = run.x();
+    double from = run.t();
+    for (bool more = true; more;) {
+      more = run.advance();
+      ASSERT_LT(deviation(run, from, start), 1e-7) << "from " << from << " to " << run.t();
+      from = run.t();
+      start = run.x();
+    }
+  }
+
   double gravity_ = 9.8;
 };
 
@@ -55,28 +67,14 @@ TYPED_TEST(BetweenEvents, AGuardHasFired) {
   const auto floor = falls<Height>(
       "floor", [](double, const Height& x) { return x[0]; }, [](auto& now) { now.x[1] = -0.9 * now.before[1]; });
   typename TestFixture::Run run(Throw{}, Height{1, 3}, {0, 5}, TypeParam{}, {.rtol = 1e-9, .events = {floor}});
-  Height start{1, 3};
-  double from = 0;
-  for (bool more = true; more;) {
-    more = run.advance();
-    ASSERT_LT(this->deviation(run, from, start), 1e-7) << "from " << from << " to " << run.t();
-    from = run.t();
-    start = run.x();
-  }
+  this->follow(run);
   EXPECT_GT(run.statistics().events, 3u);
 }
 
 TYPED_TEST(BetweenEvents, ATimeHasCome) {
   const Event<Height> kick{.name = "kick", .action = [](auto& now) { now.x[1] += 5; }, .times = {0.7, 1.9, 2}};
   typename TestFixture::Run run(Throw{}, Height{1, 3}, {0, 3}, TypeParam{}, {.rtol = 1e-9, .events = {kick}});
-  Height start{1, 3};
-  double from = 0;
-  for (bool more = true; more;) {
-    more = run.advance();
-    ASSERT_LT(this->deviation(run, from, start), 1e-7) << "from " << from << " to " << run.t();
-    from = run.t();
-    start = run.x();
-  }
+  this->follow(run);
   EXPECT_EQ(run.statistics().events, 3u);
 }
 
