@@ -5,6 +5,18 @@
 
 namespace continuo::runs {
 
+std::string_view name_of(Solver solver) {
+  switch (solver) {
+    case Solver::integration:
+      return "integration";
+    case Solver::collocation:
+      return "collocation";
+    case Solver::world:
+      return "world";
+  }
+  return "";
+}
+
 Kind kind_of(const model::Model& model) {
   const bool has_start = !model.needs_boundary_solver();
   if (model.has_world())

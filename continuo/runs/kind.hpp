@@ -18,6 +18,9 @@ namespace continuo::runs {
 /// the world that moves its bodies and the equations beside them.
 enum class Solver { integration, collocation, world };
 
+/// Its name for programs that read it: "integration", "collocation", "world".
+[[nodiscard]] std::string_view name_of(Solver solver);
+
 /// The properties of a model's runs.
 struct Kind {
   Solver solver = Solver::integration;

@@ -165,18 +165,6 @@ py::tuple span(const LoadedModel& self) {
   return py::make_tuple(value(run.from), value(run.to));
 }
 
-std::string_view solver(const LoadedModel& self) {
-  switch (runs::kind_of(self.model()).solver) {
-    case runs::Solver::integration:
-      return "integration";
-    case runs::Solver::collocation:
-      return "collocation";
-    case runs::Solver::world:
-      return "world";
-  }
-  return "";
-}
-
 void add_parts(Class& model) {
   model.def("parameters", &parameters)
       .def("inputs", &inputs)
@@ -197,7 +185,8 @@ void add_parts(Class& model) {
       .def_property_readonly("text", [](const LoadedModel& self) { return py::bytes(self.source.text()); })
       .def_property_readonly("time_unit", [](const LoadedModel& self) { return text_of(self.model().time_unit); })
       .def_property_readonly("span", &span)
-      .def_property_readonly("solver", &solver);
+      .def_property_readonly("solver",
+                             [](const LoadedModel& self) { return runs::name_of(runs::kind_of(self.model()).solver); });
 }
 
 }  // namespace

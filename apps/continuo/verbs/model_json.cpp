@@ -22,7 +22,7 @@ class ModelWriter {
   Json write() const {
     return {{"name", model_.name},
             {"heading", model_.heading},
-            {"solver", solver()},
+            {"solver", runs::name_of(runs::kind_of(model_).solver)},
             {"time_unit", model_.time_unit},
             {"states", list(model_.states, &ModelWriter::state)},
             {"modes", list(model_.modes, &ModelWriter::mode)},
@@ -45,18 +45,6 @@ class ModelWriter {
     Json array = Json::array();
     for (const Item& item : items) array.push_back((this->*json_of_item)(item));
     return array;
-  }
-
-  std::string_view solver() const {
-    switch (runs::kind_of(model_).solver) {
-      case runs::Solver::integration:
-        return "integration";
-      case runs::Solver::collocation:
-        return "collocation";
-      case runs::Solver::world:
-        return "world";
-    }
-    return "";
   }
 
   Json text(model::NodeId node) const {
