@@ -11,7 +11,7 @@ from beside import least_times, versions
 from scipy.integrate import solve_bvp as scipy_solve_bvp
 from scipy.special import erf
 
-from continuo import solve_bvp
+from continuo import solve_bvp, trace
 
 
 class Problem(NamedTuple):
@@ -80,31 +80,46 @@ def true_error(problem: Problem, found: Any, reference: Any) -> float:
     return float(np.max(np.abs(found.sol(x)[0] - exact)))
 
 
-def compare(problem: Problem, options: dict[str, Any]) -> float:
-    def run(solver: Callable[..., Any], tol: float = problem.tol) -> Any:
-        return solver(problem.fun, problem.bc, problem.x, problem.y.copy(), problem.p, tol=tol, max_nodes=100000,
-                      **options)
+def equations_of(problem: Problem) -> Any:
+    """The right-hand side traced, with unknown parameters as further components."""
+    n, k = problem.y.shape[0], 0 if problem.p is None else len(problem.p)
 
-    ours, theirs = run(solve_bvp), run(scipy_solve_bvp)
-    reference = None if problem.exact else run(solve_bvp, 1e-11)
-    our_time, their_time = least_times(lambda: run(solve_bvp), lambda: run(scipy_solve_bvp))
+    def components(x: Any, z: Any) -> list[Any]:
+        rows = problem.fun(x, z[:n], z[n:]) if k else problem.fun(x, z)
+        return [*rows[:, 0], *([0.0] * k)]
+
+    return trace(components, n + k)
+
+
+def compare(problem: Problem, options: dict[str, Any]) -> tuple[float, float]:
+    def run(solver: Callable[..., Any], fun: Any = problem.fun, tol: float = problem.tol) -> Any:
+        return solver(fun, problem.bc, problem.x, problem.y.copy(), problem.p, tol=tol, max_nodes=100000, **options)
+
+    traced = equations_of(problem)
+    ours, theirs, compiled = run(solve_bvp), run(scipy_solve_bvp), run(solve_bvp, traced)
+    reference = None if problem.exact else run(solve_bvp, tol=1e-11)
+    our_time, their_time, compiled_time = least_times(lambda: run(solve_bvp), lambda: run(scipy_solve_bvp),
+                                                      lambda: run(solve_bvp, traced))
     print(f"{problem.name:22} {problem.tol:7.0e} {their_time * 1e3:9.3f} {our_time * 1e3:9.3f} "
-          f"{their_time / our_time:7.1f} {theirs.x.size:7} {ours.x.size:6} {true_error(problem, theirs, reference):9.1e} "
-          f"{true_error(problem, ours, reference):9.1e}  {theirs.status} {ours.status}")
-    return their_time / our_time
+          f"{their_time / our_time:7.1f} {compiled_time * 1e3:9.3f} {their_time / compiled_time:7.1f} {theirs.x.size:7} "
+          f"{ours.x.size:6} {compiled.x.size:6} {true_error(problem, theirs, reference):9.1e} "
+          f"{true_error(problem, ours, reference):9.1e} {true_error(problem, compiled, reference):9.1e}  "
+          f"{theirs.status} {ours.status} {compiled.status}")
+    return their_time / our_time, their_time / compiled_time
 
 
 def main() -> None:
     print(versions())
-    print(f"{'problem':22} {'tol':>7} {'SciPy ms':>9} {'ours ms':>9} {'ratio':>7} {'nodes':>7} {'ours':>6} "
-          f"{'error':>9} {'ours':>9}  status")
+    print(f"{'problem':22} {'tol':>7} {'SciPy ms':>9} {'ours ms':>9} {'ratio':>7} {'traced ms':>9} {'ratio':>7} "
+          f"{'nodes':>7} {'ours':>6} {'traced':>6} {'error':>9} {'ours':>9} {'traced':>9}  status")
     ratios = []
     for tol in (1e-3, 1e-6):
         for problem in (bratu(tol), mathieu(tol), boundary_layer(1e-3, tol), boundary_layer(1e-4, tol),
                         layer(1e-3, tol), troesch(5, tol)):
             ratios.append(compare(problem, {}))
         ratios.append(compare(emden(tol), {"S": np.array([[0, 0], [0, -2]])}))
-    print(f"geometric mean of the ratios {np.exp(np.mean(np.log(ratios))):.1f}, least {min(ratios):.1f}")
+    for name, values in zip(("Python's fun", "traced"), zip(*ratios)):
+        print(f"{name}: geometric mean of the ratios {np.exp(np.mean(np.log(values))):.1f}, least {min(values):.1f}")
 
 
 if __name__ == "__main__":

@@ -199,7 +199,7 @@ class Run:
     def native(self) -> bool: ...
 
 def solve_bvp(
-    fun: Callable[..., ArrayLike],
+    fun: Any,
     bc: Callable[..., ArrayLike],
     x: NDArray[Any],
     y: NDArray[Any],

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _continuo
 from .result import Result
+from .right_hand_side import with_equations
 
 __all__ = ["BVPResult", "CubicSolution", "solve_bvp"]
 
@@ -210,7 +211,7 @@ def _message(found: dict[str, Any]) -> str:
 
 
 def solve_bvp(
-    fun: Callable[..., ArrayLike],
+    fun: Any,
     bc: Callable[..., ArrayLike],
     x: ArrayLike,
     y: ArrayLike,
@@ -240,6 +241,9 @@ def solve_bvp(
         once. x has shape (m,), y shape (n, m), p shape (k,); it returns an array of shape (n, m). Column q
         must depend on ``x[q]`` and ``y[:, q]`` only. For derivatives by differences it is called with
         points that repeat; a function that cannot take these is called component by component instead.
+        Or a compiled function, as `solve_ivp` takes it: traced, an expression, a cfunc of numba, a
+        ``scipy.LowLevelCallable``, a ctypes function. It gets one point at a time, y followed by p as its
+        components, of which those of p have the derivative 0; its own Jacobian is taken where it has one.
     bc : callable
         ``bc(ya, yb)`` or ``bc(ya, yb, p)``: the residuals of the conditions, shape (n + k,).
     x : array_like, shape (m,)
@@ -324,6 +328,7 @@ def solve_bvp(
     >>> bool(abs(result.sol(0.5)[0] - 0.1405) < 1e-4)
     True
     """
+    fun = with_equations(fun)
     mesh = _checked_mesh(x)
     guess = _checked_guess(y, mesh.shape[0])
     parameters = _checked_parameters(p, guess.dtype)

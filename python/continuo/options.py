@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _continuo
 from .events import event_fields
 from .progress_bar import progress_function
-from .right_hand_side import expression
+from .right_hand_side import with_equations
 
 Array = npt.NDArray[Any]
 
@@ -383,8 +383,7 @@ def begin_run(
     grown: tuple[Array, Array] | None = None,
 ) -> _continuo.Run:
     """Begin a run of these settings, all of them checked."""
-    if isinstance(fun, (str, list, tuple)) and not hasattr(fun, "signature"):  # a LowLevelCallable is a tuple
-        fun = expression(fun)
+    fun = with_equations(fun)
     n = len(y)
     extras: dict[str, Any] = {}
     max_step = np.inf

@@ -297,6 +297,13 @@ def expression(equations: str | Sequence[str], native: str = "auto", **parameter
     return RightHandSide("\n".join(stated + lines) + "\n", "expression", native)
 
 
+def with_equations(fun: Any) -> Any:
+    """`fun` of a solver, where it is equations as text; all else as it is."""
+    if isinstance(fun, (str, list, tuple)) and not hasattr(fun, "signature"):  # a LowLevelCallable is a tuple
+        return expression(fun)
+    return fun
+
+
 def _number(name: str, value: Any) -> str:
     try:
         number = float(value)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -11,6 +12,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 
+#include "native_at_points.hpp"
 #include "parts.hpp"
 #include <continuo/boundary/two_point.hpp>
 
@@ -24,6 +26,7 @@ using continuo::boundary::TwoPointOptions;
 using continuo::boundary::TwoPointProblem;
 using continuo::boundary::TwoPointProgress;
 using continuo::boundary::TwoPointSolution;
+using continuo::python::NativeAtPoints;
 
 /// The type that NumPy knows a number by; in memory they are the same.
 template <class Number>
@@ -238,6 +241,26 @@ class FunctionsOfPython {
   py::ssize_t n_, k_;
 };
 
+/// `fun` where it is compiled, called without the lock of the interpreter; nothing where it is a Python function.
+template <class Number>
+std::optional<NativeAtPoints> compiled(const py::object& fun, std::size_t size, std::size_t parameters) {
+  auto native = continuo::python::native_of(fun, py::none());
+  if (!native) return {};
+  if (!std::is_same_v<Number, double>)
+    throw py::type_error("a compiled `fun` computes with real numbers, and `y` is complex");
+  return NativeAtPoints(std::move(*native), size, parameters);
+}
+
+void add_compiled(NativeAtPoints& function, TwoPointProblem<double>& problem) {
+  using Numbers = std::span<const double>;
+  problem.derivative = [&function](Numbers x, Numbers y, Numbers p, std::span<double> f) {
+    function.derivative(x, y, p, f);
+  };
+  if (function.has_jacobian() && !problem.derivative_jacobian)
+    problem.derivative_jacobian = [&function](Numbers x, Numbers y, Numbers p, std::span<double> by_y,
+                                              std::span<double> by_p) { function.jacobian(x, y, p, by_y, by_p); };
+}
+
 template <class Number>
 std::vector<Number> vector_of(const Array<Number>& array) {
   return {numbers_of<Number>(array), numbers_of<Number>(array) + array.size()};
@@ -297,10 +320,14 @@ py::dict solve(py::object fun, py::object bc, const Array<double>& x, const Arra
                std::size_t max_nodes, const py::object& progress) {
   const auto n = static_cast<std::size_t>(y.shape(0));
   TwoPointProblem<Number> problem{.size = n, .parameters = static_cast<std::size_t>(p.size())};
+  auto native = compiled<Number>(fun, n, problem.parameters);
   Lock lock;
   const FunctionsOfPython<Number> functions(lock, std::move(fun), std::move(bc), std::move(fun_jac), std::move(bc_jac),
                                             n, problem.parameters);
   functions.add_to(problem);
+  if constexpr (std::is_same_v<Number, double>) {
+    if (native) add_compiled(*native, problem);
+  }
   problem.singular_term = vector_of<Number>(singular_term);
   problem.first_value = vector_of<Number>(first_value);
   problem.first_derivative = vector_of<Number>(first_derivative);

@@ -1,14 +1,18 @@
 """solve_bvp: true errors on random problems with closed forms, and every way in which a problem or a call can be bad."""
 
+import ctypes
 import os
 import signal
 import threading
 import warnings
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
+from compiled import function
 
-from continuo import solve_bvp
+from continuo import solve_bvp, trace
 
 
 def exponential(a: np.ndarray) -> np.ndarray:
@@ -44,16 +48,35 @@ def random_linear(seed: int, is_complex: bool):
     return n, (lambda x, y: a @ y + g[:, None]), (lambda ya, yb: first @ ya + last @ yb - c), exact, green
 
 
-@pytest.mark.parametrize("is_complex", [False, True])
+def traced(fun: Callable[..., Any], n: int) -> Any:
+    """Its equations, with their exact Jacobian."""
+    return trace(lambda x, y: fun(x, y[:, None])[:, 0], n)
+
+
+def as_callback(fun: Callable[..., Any], n: int) -> Any:
+    """A function of ctypes that calls it, without a Jacobian."""
+    numbers = ctypes.POINTER(ctypes.c_double)
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_double, numbers, numbers, ctypes.c_void_p)
+    def callback(x: float, y: Any, slopes: Any, _: Any) -> None:
+        for i, slope in enumerate(fun(x, np.array(y[:n])[:, None])[:, 0]):
+            slopes[i] = slope
+
+    return callback
+
+
+@pytest.mark.parametrize("kind", ["real", "complex", "traced", "compiled"])
 @pytest.mark.parametrize("seed", range(12))
-def test_error_of_random_linear_problems(seed: int, is_complex: bool) -> None:
+def test_error_of_random_linear_problems(seed: int, kind: str) -> None:
+    is_complex = kind == "complex"
     n, fun, bc, exact, green = random_linear(seed, is_complex)
     if green > 1e4:
         pytest.skip("the problem magnifies residuals too much to say anything of the error")
+    given = {"traced": traced, "compiled": as_callback}.get(kind, lambda fun, n: fun)(fun, n)
     dtype = complex if is_complex else float
     x = np.linspace(0, 1, 201)
-    for tol in (1e-3, 1e-6, 1e-9):
-        found = solve_bvp(fun, bc, [0, 0.4, 1], np.zeros((n, 3), dtype), tol=tol, bc_tol=tol * 1e-3, max_nodes=100000)
+    for tol in (1e-3, 1e-6) if kind == "compiled" else (1e-3, 1e-6, 1e-9):  # its calls come back to Python
+        found = solve_bvp(given, bc, [0, 0.4, 1], np.zeros((n, 3), dtype), tol=tol, bc_tol=tol * 1e-3, max_nodes=100000)
         assert found.success, found.message
         y = exact(x)
         slope = np.abs(fun(x, y)).max()
@@ -258,3 +281,39 @@ def test_interrupt_at_once() -> None:
     with pytest.raises(KeyboardInterrupt):
         for _ in range(1000):
             solve_bvp(fun, ends, np.linspace(0, 1, 2000), np.zeros((2, 2000)), tol=1e-12, max_nodes=10**6)
+
+
+def eigenvalue(fun: Any, n: int = 2) -> Any:
+    """Mathieu's equation y'' = -(p - 10 cos 2x) y with the eigenvalue a_4(5)."""
+    x = np.linspace(0, np.pi, 10)
+    guess = np.vstack((np.cos(4 * x), -4 * np.sin(4 * x)))
+    return solve_bvp(fun, lambda a, b, p: [a[1], b[1], a[0] - 1], x, guess[:n], p=[15.0], tol=1e-9, max_nodes=10000)
+
+
+def test_unknown_parameters_are_components_of_a_compiled_function() -> None:
+    special = pytest.importorskip("scipy.special")
+    exact = special.mathieu_a(4, 5)
+    by_numpy = eigenvalue(lambda x, y, p: np.vstack((y[1], -(p[0] - 10 * np.cos(2 * x)) * y[0])))
+    by_trace = eigenvalue(trace(lambda x, z: [z[1], -(z[2] - 10 * np.cos(2 * x)) * z[0], 0 * z[0]], 3))
+    by_text = eigenvalue(["y[1]", "-(y[2] - 10*cos(2*t))*y[0]", "0"])
+    for found in (by_numpy, by_trace, by_text):
+        assert found.success and found.y.shape[0] == 2
+        assert abs(found.p[0] - exact) < 1e-7
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_wrong_compiled_functions() -> None:
+    with pytest.raises(ValueError, match=r"one of 2 components, but `y` and `p`.* have 2 and 1"):
+        eigenvalue(["y[1]", "-y[0]"])
+    with pytest.raises(ValueError, match=r"component 2 of the compiled `fun` is p\[0\], a constant"):
+        eigenvalue(["y[1]", "-y[2]*y[0]", "y[0] + 1"])
+
+    def conditions(a: Any, b: Any) -> Any:
+        return [a[0], b[0] - 1, b[2]]
+
+    with pytest.raises(TypeError, match="real numbers"):
+        solve_bvp(function("lorenz"), conditions, [0, 1], np.zeros((3, 2), complex))
+    found = solve_bvp(["y[1]", "y[0] + sqrt(t - 0.5)", "0"], conditions, [0, 1], np.zeros((3, 2)))
+    assert found.status == 4 and "Component 1 of `fun`" in found.message
+    silent = as_callback(lambda x, y: 1 / 0, 3)  # ctypes prints the exception, and nothing is written
+    assert solve_bvp(silent, conditions, [0, 1], np.zeros((3, 2))).status == 4
