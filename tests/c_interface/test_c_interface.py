@@ -6,6 +6,7 @@ import math
 import pathlib
 import random
 import re
+import shutil
 import subprocess
 import threading
 import time
@@ -321,3 +322,26 @@ def test_the_programs_of_the_page(tmp_path):
         assert compile_and_run(["gcc", "-std=c99"], tmp_path, source) == output
     (in_python,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(compile(in_python.replace('"libcontinuo.so"', repr(library._name)), "c_interface.md", "exec"), {})
+
+
+@pytest.mark.skipif(not (shutil.which("mkoctfile") and shutil.which("octave-cli")), reason="GNU Octave is not installed")
+def test_the_page_in_octave(tmp_path):
+    page = (ROOT / "docs/c_interface.md").read_text()
+    (text,) = re.findall(r"```c file=continuo_column.c\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "continuo_column.c").write_text(text)
+    library_folder = pathlib.Path(library._name).parent
+    subprocess.run(["mkoctfile", "--mex", "-Wall", "-Werror", f"-I{ROOT}", "continuo_column.c", f"-L{library_folder}",
+                    "-lcontinuo", f"-Wl,-rpath,{library_folder}"], cwd=tmp_path, check=True, timeout=100)  # fmt: skip
+    (tmp_path / "ball.sim").write_text("h'' = -9.81\nh(0) = 10;  h'(0) = 0\nrun 0..5 output 0.01\n")
+    (tmp_path / "wrong.sim").write_text("h'' = -9.81*k\nh(0) = 10;  h'(0) = 0\nrun 0..5\n")
+    (program,) = re.findall(r"```matlab\n(h = .*?)```", page, re.DOTALL)
+    program += r"""
+    printf('%d\n', rows(h));
+    for wrong = {{'wrong.sim', 'h', 1}, {'ball.sim', 'z', 1}, {'none.sim', 'h', 1}, {1}}
+      try, continuo_column(wrong{1}{:}); catch error, printf('%s\n', strtok(error.message, "\n")); end
+    end"""
+    run = subprocess.run(["octave-cli", "--no-init-file", "--quiet", "--eval", program], cwd=tmp_path, check=True,
+                         capture_output=True, text=True, timeout=60)  # fmt: skip
+    end, count, *messages = run.stdout.splitlines()
+    assert float(end) == 5.095 and count == "101"  # 10 - 9.81/2
+    assert "E210" in messages[0] and "z" in messages[1] and "none.sim" in messages[2] and "usage" in messages[3]
