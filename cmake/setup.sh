@@ -46,6 +46,8 @@ packages_to_test=(
   "python3-netcdf4        -            what it reads them with"
   "python3-pandas         -            reads our CSV, as users do"
   "python3-scipy          -            compared with on docs/coming_from_scipy.md"
+  "python3-numba          -            compiles right-hand sides for the Python module, as users do"
+  "octave-dev             mkoctfile    calls continuo.h, and runs the programs of docs/coming_from_matlab.md"
   "python3-jsonschema     -            judges the answers to --json by their schemas"
   "libopenmpi-dev         -            sweeps on many processors: continuo-mpi"
   "openmpi-bin            mpirun       starts them"

@@ -298,6 +298,26 @@ def test_functions_of_numba_and_methods_of_scipy() -> None:
     assert np.array_equal(by_class.y, solve_ivp(_decay, (0, 1), [1.0], method="DOP853").y)
 
 
+def test_a_cfunc_of_numba() -> None:
+    numba = pytest.importorskip("numba")
+    types = numba.types
+    signature = types.void(types.double, types.CPointer(types.double), types.CPointer(types.double), types.voidptr)
+
+    @numba.cfunc(signature)
+    def lorenz(t, y, dydt, user):  # type: ignore[no-untyped-def]  # numba has its own types
+        dydt[0] = 10 * (y[1] - y[0])
+        dydt[1] = y[0] * (28 - y[2]) - y[1]
+        dydt[2] = y[0] * y[1] - 8.0 / 3 * y[2]
+
+    for f in (lorenz, lorenz.ctypes):
+        found, in_c = (solve_ivp(g, (0, 1), [1.0, 1, 1], rtol=1e-9, atol=1e-9) for g in (f, function("lorenz")))
+        assert found.success and np.abs(found.y[:, -1] - in_c.y[:, -1]).max() < 1e-7
+    without_user = numba.cfunc(types.void(*signature.args[:3]))(lambda t, y, dydt: None)
+    assert solve_ivp(without_user, (0, 1), [1.0]).success
+    with pytest.raises(TypeError, match="numba"):
+        solve_ivp(numba.cfunc("double(double)")(lambda t: t), (0, 1), [1.0])
+
+
 def test_a_band_of_complex_components() -> None:
     n = 25
     matrix = np.diag(np.full(n - 1, 1j), 1) + np.diag(np.full(n, -1 + 1j)) + np.diag(np.full(n - 1, 0.5), -1)
