@@ -52,7 +52,7 @@ py::list columns(const ModelRun& self) {
 }
 
 /// Names, marks, times and impulses (NaN for none) of the events; which of them have states before and after; these.
-py::tuple events(const ModelRun& self) {
+py::tuple events_of(const ModelRun& self) {
   py::list names, marks;
   std::vector<double> times, impulses, before, after;
   std::vector<std::size_t> with_states;
@@ -235,7 +235,7 @@ void add_model_run(py::module_& module) {
       .def("states", [](const ModelRun& self) { return self.run.motion.states; })
       .def("total_energy", [](const ModelRun& self) { return array_of(self.run.total_energy); })
       .def("energy_unit", [](const ModelRun& self) { return text_of(self.program->model.total_energy_unit); })
-      .def("events", &events)
+      .def("events", &events_of)
       .def("outcome", &outcome)
       .def("statistics", &statistics)
       .def("checks", &checks)

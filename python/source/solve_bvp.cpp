@@ -252,12 +252,12 @@ std::optional<NativeAtPoints> compiled(const py::object& fun, std::size_t size, 
 }
 
 void add_compiled(NativeAtPoints& function, TwoPointProblem<double>& problem) {
-  using Numbers = std::span<const double>;
-  problem.derivative = [&function](Numbers x, Numbers y, Numbers p, std::span<double> f) {
+  using Values = std::span<const double>;
+  problem.derivative = [&function](Values x, Values y, Values p, std::span<double> f) {
     function.derivative(x, y, p, f);
   };
   if (function.has_jacobian() && !problem.derivative_jacobian)
-    problem.derivative_jacobian = [&function](Numbers x, Numbers y, Numbers p, std::span<double> by_y,
+    problem.derivative_jacobian = [&function](Values x, Values y, Values p, std::span<double> by_y,
                                               std::span<double> by_p) { function.jacobian(x, y, p, by_y, by_p); };
 }
 
