@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _continuo
 from .events import event_fields
 from .progress_bar import progress_function
-from .right_hand_side import with_equations
+from .right_hand_side import RightHandSide, with_equations
 
 Array = npt.NDArray[Any]
 
@@ -368,6 +368,12 @@ def _extras(
         _jacobian(options, t0, y, args, grown, extras)
 
 
+def _own_pattern(fun: RightHandSide, n: int, y: Array, extras: dict[str, Any]) -> None:
+    """Take the places of the exact Jacobian that the equations have, unless another one is given."""
+    if fun.n == n and y.dtype.kind != "c" and not {"jac", "jac_constant", "second_order"} & extras.keys():
+        extras.update(pattern=fun.jacobian_pattern(), pattern_is_native=True)
+
+
 def begin_run(
     fun: Any,
     t0: float,
@@ -397,6 +403,8 @@ def begin_run(
         extras["events"] = event_fields(events)
     if vectorized:
         extras["vectorized"] = True
+    if n >= LEAST_SPARSE_SIZE and "jac" in method.options and isinstance(fun, RightHandSide):
+        _own_pattern(fun, n, y, extras)
     name = method.name or _choose(n, rtol, extras)
     if method.second_order and not ("second_order" in extras or "pairs" in extras):
         raise ValueError(

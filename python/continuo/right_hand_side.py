@@ -162,6 +162,10 @@ class RightHandSide:
         """
         return self._with(args).jacobian(float(t), _real(y))
 
+    def jacobian_pattern(self) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """Where df/dy may differ from zero: rows and columns, column by column; the diagonal is among them."""
+        return self._compiled.jacobian_pattern()
+
     def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
         """The compiled functions for the solvers, with the parameters as they are now, or with these."""
         if args:
@@ -236,6 +240,7 @@ def _native_of(compiled: _continuo.RightHandSide) -> _continuo.Native:
     return _continuo.Native(
         compiled.derivative_address,
         jacobian=compiled.jacobian_address,
+        entries=compiled.jacobian_entries_address,
         user=compiled.user,
         size=compiled.n,
         owner=compiled,

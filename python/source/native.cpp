@@ -157,6 +157,9 @@ address : int
 jacobian : int, optional
     The address of ``void jac(double t, const double *y, double *rows, void *user)``, which writes df/dy row by
     row into n*n numbers that begin as zeros. 0: by differences.
+entries : int, optional
+    The address of ``void entries(double t, const double *y, double *values, void *user)``, which writes those of
+    df/dy that may differ from zero, column by column. 0: not known.
 user : int, optional
     The address that both get as `user`.
 size : int, optional
@@ -164,14 +167,17 @@ size : int, optional
 owner : object, optional
     What is kept alive as long as the functions may be called.)")
       .def(py::init([](std::uintptr_t address, std::uintptr_t jacobian, std::uintptr_t user,
-                       std::optional<std::size_t> size, py::object owner) {
+                       std::optional<std::size_t> size, py::object owner, std::uintptr_t entries) {
              if (address == 0) throw py::value_error("the address of the compiled right-hand side is zero");
              return Native{continuo::python::function_at<Native::Derivative>(address),
-                           continuo::python::function_at<Native::Jacobian>(jacobian), reinterpret_cast<void*>(user),
-                           size.value_or(0), std::move(owner)};
+                           continuo::python::function_at<Native::Jacobian>(jacobian),
+                           continuo::python::function_at<Native::Jacobian>(entries),
+                           reinterpret_cast<void*>(user),
+                           size.value_or(0),
+                           std::move(owner)};
            }),
            py::arg("address"), py::arg("jacobian") = 0, py::arg("user") = 0, py::arg("size") = py::none(),
-           py::arg("owner") = py::none())
+           py::arg("owner") = py::none(), py::arg("entries") = 0)
       .def_property_readonly("address",
                              [](const Native& native) { return reinterpret_cast<std::uintptr_t>(native.derivative); })
       .def_property_readonly("jacobian",

@@ -14,6 +14,7 @@ struct Native {
 
   Derivative derivative = nullptr;
   Jacobian jacobian = nullptr;  // df/dx row by row, n*n numbers that begin as zeros; null: by differences
+  Jacobian entries = nullptr;   // df/dx where it may differ from zero, in the order of a pattern; null: not known
   void* user = nullptr;         // handed to both
   std::size_t size = 0;         // the number of components; 0: not known
   pybind11::object owner{};     // kept alive as long as the functions may be called

@@ -121,8 +121,7 @@ void RightHandSide::evaluate(double t, const double* x, double* dxdt) const {
   workspace().derivatives(t, {x, size()}, {dxdt, size()});
 }
 
-void RightHandSide::jacobian(double t, const double* x, double* rows) const {
-  Workspace& mine = workspace();
+model::ModelSystem& RightHandSide::differentiated(Workspace& mine) const {
   if (!mine.system) {
     const std::scoped_lock lock(mutex_);
     if (!differentiated_) {
@@ -131,8 +130,24 @@ void RightHandSide::jacobian(double t, const double* x, double* rows) const {
     }
     mine.system = std::make_unique<ModelSystem>(*differentiated_);
   }
+  return *mine.system;
+}
+
+void RightHandSide::jacobian(double t, const double* x, double* rows) const {
+  Workspace& mine = workspace();
   mine.x.assign(x, x + size());
-  mine.system->jacobian(t, mine.x, {rows, size() * size()});
+  differentiated(mine).jacobian(t, mine.x, {rows, size() * size()});
+}
+
+SparsePattern RightHandSide::jacobian_pattern() const {
+  return differentiated(workspace()).jacobian_pattern();
+}
+
+void RightHandSide::jacobian_values(double t, const double* x, double* values) const {
+  Workspace& mine = workspace();
+  mine.x.assign(x, x + size());
+  ModelSystem& system = differentiated(mine);
+  system.jacobian_values(t, mine.x, {values, system.jacobian_pattern().entries()});
 }
 
 void RightHandSide::derivative(double t, const double* x, double* dxdt, void* user) noexcept {
@@ -150,6 +165,15 @@ void RightHandSide::jacobian_rows(double t, const double* x, double* rows, void*
     f.jacobian(t, x, rows);
   } catch (...) {
     std::fill_n(rows, f.size() * f.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void RightHandSide::jacobian_entries(double t, const double* x, double* values, void* user) noexcept {
+  const RightHandSide& f = *static_cast<const RightHandSide*>(user);
+  try {
+    f.jacobian_values(t, x, values);
+  } catch (...) {
+    values[0] = std::numeric_limits<double>::quiet_NaN();  // its diagonal entry: there is a component
   }
 }
 

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/simulation/native.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/simulation/program/model_system.hpp>
@@ -40,10 +41,15 @@ class RightHandSide {
 
   void evaluate(double t, const double* x, double* dxdt) const;
   void jacobian(double t, const double* x, double* rows) const;
+  /// Where df/dx may differ from zero, whatever the parameters. The first call differentiates the equations.
+  [[nodiscard]] SparsePattern jacobian_pattern() const;
+  /// The entries of df/dx in the order of the pattern.
+  void jacobian_values(double t, const double* x, double* values) const;
 
   /// The same for those who call through pointers; `user` is the RightHandSide. Out of memory, the result is NaN.
   static void derivative(double t, const double* x, double* dxdt, void* user) noexcept;
   static void jacobian_rows(double t, const double* x, double* rows, void* user) noexcept;
+  static void jacobian_entries(double t, const double* x, double* values, void* user) noexcept;
 
  private:
   /// What one thread computes with.
@@ -54,6 +60,7 @@ class RightHandSide {
   };
   [[nodiscard]] Workspace& workspace() const;
   [[nodiscard]] Workspace& workspace_of_thread() const;
+  [[nodiscard]] model::ModelSystem& differentiated(Workspace& mine) const;
 
   std::shared_ptr<const model::ModelProgram> program_;
   std::vector<double> variables_;

@@ -51,6 +51,18 @@ Numbers jacobian_at(const RightHandSide& f, double t, const Numbers& y) {
   return rows;
 }
 
+py::tuple jacobian_pattern(const RightHandSide& f) {
+  const continuo::SparsePattern pattern = f.jacobian_pattern();
+  const auto entries = static_cast<py::ssize_t>(pattern.entries());
+  py::array_t<std::uint32_t> rows(entries), columns(entries);
+  for (std::size_t j = 0; j < pattern.size(); ++j)
+    for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p) {
+      rows.mutable_data()[p] = static_cast<std::uint32_t>(pattern.row(p));
+      columns.mutable_data()[p] = static_cast<std::uint32_t>(j);
+    }
+  return py::make_tuple(rows, columns);
+}
+
 py::dict parameters(const RightHandSide& f) {
   py::dict values;
   for (const Parameter& p : f.model().parameters) values[py::str(p.name)] = f.variables()[p.variable];
@@ -109,6 +121,7 @@ void add_right_hand_side(py::module_& module) {
           py::arg("values"))
       .def("__call__", &derivative_at, py::arg("t"), py::arg("y"))
       .def("jacobian", &jacobian_at, py::arg("t"), py::arg("y"))
+      .def("jacobian_pattern", &jacobian_pattern)
       .def("c", &exported)
       .def_property_readonly("n", &RightHandSide::size)
       .def_property_readonly("text", [](const RightHandSide& f) { return f.model().text.content; })
@@ -121,5 +134,7 @@ void add_right_hand_side(py::module_& module) {
                                     [](const py::object&) { return address(&RightHandSide::derivative); })
       .def_property_readonly_static("jacobian_address",
                                     [](const py::object&) { return address(&RightHandSide::jacobian_rows); })
+      .def_property_readonly_static("jacobian_entries_address",
+                                    [](const py::object&) { return address(&RightHandSide::jacobian_entries); })
       .def_property_readonly("user", [](const RightHandSide& f) { return address(&f); });
 }

@@ -102,6 +102,12 @@ std::unique_ptr<StateFunction> Run::function(const py::object& f, const std::str
   return std::make_unique<StateFunction>(f, settings_.arguments, form, name, control_);
 }
 
+void Run::set_native_jacobian() {
+  if (functions_->jacobian.call || functions_->jacobian_values.call || second_order_) return;
+  if (native_->jacobian) functions_->jacobian = {native_->jacobian, native_->user};
+  if (native_->entries && pattern_is_native_) functions_->jacobian_values = {native_->entries, native_->user};
+}
+
 void Run::set_functions(const py::object& fun) {
   const std::size_t n = functions_->size;
   if (second_order_ && n % 2 != 0)
@@ -119,8 +125,7 @@ void Run::set_functions(const py::object& fun) {
     functions_->derivative = {native_->derivative, native_->user};
     if (native_->may_write_nothing) functions_->derivative = {native_derivative, this};
     if (second_order_) functions_->derivative = {native_accelerations, this};
-    if (native_->jacobian && !functions_->jacobian.call && !functions_->jacobian_values.call && !second_order_)
-      functions_->jacobian = {native_->jacobian, native_->user};
+    set_native_jacobian();
     holds_gil_ = false;
     return;
   }
@@ -326,6 +331,7 @@ void Run::read_jacobian(const py::dict& extras) {
     std::vector<MatrixPlace> places;
     for (py::ssize_t k = 0; k < rows.size(); ++k) places.push_back({rows.at(k), columns.at(k)});
     functions_->pattern = SparsePattern(y0_.size(), places);
+    pattern_is_native_ = !extra(extras, "pattern_is_native").is_none();
   }
   const py::object jac = extra(extras, "jac"), constant = extra(extras, "jac_constant");
   const bool values = !extra(extras, "jac_is_values").is_none();

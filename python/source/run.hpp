@@ -85,6 +85,7 @@ class Run {
   void read_events(const pybind11::handle& events, Options<std::vector<double>>& options);
   void read_jacobian(const pybind11::dict& extras);
   void read_mass(const pybind11::handle& mass);
+  void set_native_jacobian();
   void set_functions(const pybind11::object& fun);
   [[nodiscard]] std::unique_ptr<StateFunction> function(const pybind11::object& f, const std::string& name);
   void act(StateFunction& action, EventAction<std::vector<double>>& now);
@@ -115,6 +116,7 @@ class Run {
   std::optional<Native> native_;
   std::unique_ptr<StateFunction> fun_, jac_;
   std::vector<double> constant_jacobian_;  // row by row, or of the pattern
+  bool pattern_is_native_ = false;         // that of the compiled function's own Jacobian
   std::vector<EventFunctions> events_;
   std::vector<std::string> event_names_;
   std::shared_ptr<ForeignFunctions> functions_ = std::make_shared<ForeignFunctions>();

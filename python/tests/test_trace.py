@@ -448,3 +448,39 @@ def test_models_of_equations_are_functions(tmp_path: Any) -> None:
     bouncing = continuo.Model(text="h' = -1; h(0) = 1\nwhen h falls through 0 { h := 1 }\nrun 0..1")
     with pytest.raises(continuo.ModelError, match="it has events"):
         bouncing.right_hand_side()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_pattern_of_the_jacobian(seed: int) -> None:
+    """Random sparse systems, linear and not: the pattern has all that differs from zero, and the solvers take it."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(20, 40))
+    matrix = np.where(rng.random((n, n)) < 0.08, rng.normal(size=(n, n)), 0)
+    kinds = rng.integers(0, 3, n)
+
+    def f(t: Any, y: Any, k: Any) -> Any:
+        rows = matrix @ y
+        return [(rows[i], np.sin(rows[i]), rows[i] * y[i])[kinds[i]] - k * y[i] for i in range(n)]
+
+    traced = continuo.trace(f, n, args=(100.0,))
+    y = rng.normal(size=n)
+    dense = traced.jacobian(0.3, y, 50.0)
+    rows, columns = traced.jacobian_pattern()
+    known = np.zeros((n, n), bool)
+    known[rows, columns] = True
+    assert not np.any(dense[~known]) and np.all(np.diagonal(known)) and len(rows) < n * n / 4
+    mass = np.eye(n) + 0.1 * np.eye(n, k=1)
+    for options in ({}, {"args": (50.0,)}, {"mass": mass}, {"mass": np.linspace(1, 2, n)}):
+        k = options.get("args", (100.0,))[0]
+
+        def by_rows(t: float, y: Any, *_: Any, k: float = k) -> Any:
+            return traced.jacobian(t, y, k)
+
+        for method in ("Radau", "BDF", "rodas5p", None):
+            sparse, rows_given = (
+                continuo.solve_ivp(traced, (0, 1), y, method=method, rtol=1e-6, atol=1e-9, jac=jac, **options)
+                for jac in (None, by_rows)
+            )
+            # Both are within the tolerance, as errors are damped by exp(-k/2 t).
+            assert sparse.success and np.abs(sparse.y[:, -1] - rows_given.y[:, -1]).max() < 2e-5
+            assert sparse.nfev < 3 * rows_given.nfev  # no differences of columns
