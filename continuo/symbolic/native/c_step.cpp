@@ -9,6 +9,7 @@
 
 #include <continuo/symbolic/native/c_source.hpp>
 #include <continuo/symbolic/native/c_step.hpp>
+#include <continuo/symbolic/tape/tape_lanes.hpp>
 
 namespace continuo::model {
 
@@ -16,6 +17,7 @@ namespace {
 
 // Beyond, statements are loops, and f is a function that is called.
 constexpr std::size_t most_states_unrolled = 8, most_registers_unrolled = 100, most_operations_inside = 1500;
+constexpr std::size_t most_states_of_step = 16;  // of one run
 
 constexpr std::string_view beginning =
     "struct lane_step {\n"
@@ -31,14 +33,29 @@ constexpr std::string_view beginning =
     "  __builtin_memcpy(&a, from, sizeof a);\n"
     "  return a;\n"
     "}\n"
-    "static inline void store(lanes a, double *to) { __builtin_memcpy(to, &a, sizeof a); }\n"
+    "static inline void store(lanes a, double *to) { __builtin_memcpy(to, &a, sizeof a); }\n";
+constexpr std::string_view choices_of_lanes =
     "static inline lanes size_of(lanes a) { return (lanes)((lane_masks)a & ~(lane_masks)all_lanes(-0.0)); }\n"
     "static inline lanes greater(lanes a, lanes b) { return choose(a < b, b, a); }\n";
+/// One run: its lanes are a number.
+constexpr std::string_view single_lane =
+    "#define WIDTH 1\n"
+    "typedef double lanes;\n"
+    "static inline lanes all_lanes(double a) { return a; }\n"
+    "static inline lanes size_of(lanes a) { return fabs(a); }\n"
+    "static inline lanes greater(lanes a, lanes b) { return a < b ? b : a; }\n";
+
+/// Whether f can be written wherever it is needed.
+bool is_short(const Tape& tape, const CStepFormula& formula) {
+  const Tape::Size size = tape.size();
+  return size.batches == 0 && size.single * (formula.b.size() + 1) <= most_operations_inside;
+}
 
 class StepText {
  public:
-  StepText(const Tape& tape, const CStepFormula& formula)
-      : tape_(tape), formula_(formula), states_(tape.states_end() - tape.states_begin()) {}
+  /// `runs`: how many make the step together, those of TapeLanes or one.
+  StepText(const Tape& tape, const CStepFormula& formula, std::size_t runs)
+      : tape_(tape), formula_(formula), runs_(runs), states_(tape.states_end() - tape.states_begin()) {}
 
   [[nodiscard]] std::string text() {
     const std::string rates = rates_function();
@@ -46,19 +63,24 @@ class StepText {
     const std::string step = std::exchange(text_, {});
     evaluate();
     const std::string all = rates + step + text_;
-    return c_lane_helpers(all) + std::string(beginning) + all;
+    if (is_single()) return std::string(single_lane) + std::string(beginning) + all;
+    return c_lane_helpers(all) + std::string(beginning) + std::string(choices_of_lanes) + all;
   }
 
  private:
+  [[nodiscard]] bool is_single() const { return runs_ == 1; }
+  /// Number `i` of all runs in this array.
+  [[nodiscard]] std::string element(std::string_view array, std::string_view i) const {
+    return fmt::format("{} + {} * {} + part", array, runs_, i);
+  }
+
   [[nodiscard]] std::string rates_function() const {
     const CArray states[] = {{"x", tape_.states_begin(), tape_.states_end()}};
-    const Tape::Size size = tape_.size();
-    const bool is_small = size.batches == 0 && size.single * (formula_.b.size() + 1) <= most_operations_inside;
     const std::string signature = fmt::format(
         "static inline __attribute__(({})) void rates(lanes *restrict r, const lanes *restrict x, "
         "lanes *restrict y)",
-        is_small ? "always_inline" : "noinline");
-    return c_function(tape_, {.signature = signature, .arrays = states, .in_lanes = true}).text;
+        is_short(tape_, formula_) ? "always_inline" : "noinline");
+    return c_function(tape_, {.signature = signature, .arrays = states, .in_lanes = !is_single()}).text;
   }
 
   void line(std::string_view what) { text_ += fmt::format("  {}\n", what); }
@@ -93,12 +115,12 @@ class StepText {
     line(fmt::format("lanes x[{0}], y[{0}], end[{0}];", states_));
     for (std::size_t j = 0; j < stages; ++j) line(fmt::format("lanes k{}[{}];", j, states_));
     line("const lanes t = load(s->t + part), h = load(s->h + part);");
-    each_state([](std::string_view i) { return fmt::format("x[{0}] = load(s->x + 8 * {0} + part);", i); });
+    each_state([this](std::string_view i) { return fmt::format("x[{}] = load({});", i, element("s->x", i)); });
     line("if (s->evaluates_start) {");
     line("r[0] = t;");
     line("rates(r, x, k0);");
     line("} else {");
-    each_state([](std::string_view i) { return fmt::format("k0[{0}] = load(s->stages[0] + 8 * {0} + part);", i); });
+    each_state([this](std::string_view i) { return fmt::format("k0[{}] = load({});", i, element("s->stages[0]", i)); });
     line("}");
     for (std::size_t j = 1; j + (formula_.ends_with_f ? 1 : 0) < stages; ++j) stage(j);
     each_state([&](std::string_view i) {
@@ -108,10 +130,11 @@ class StepText {
       line("r[0] = t + h;");
       line(fmt::format("rates(r, end, k{});", stages - 1));
     }
-    each_state([](std::string_view i) { return fmt::format("store(end[{0}], s->x_new + 8 * {0} + part);", i); });
+    each_state([this](std::string_view i) { return fmt::format("store(end[{}], {});", i, element("s->x_new", i)); });
     const auto keep = [&](std::size_t j) {
-      each_state(
-          [j](std::string_view i) { return fmt::format("store(k{0}[{1}], s->stages[{0}] + 8 * {1} + part);", j, i); });
+      each_state([this, j](std::string_view i) {
+        return fmt::format("store(k{}[{}], {});", j, i, element(fmt::format("s->stages[{}]", j), i));
+      });
     };
     keep(0);
     const std::size_t inner = stages - (formula_.ends_with_f ? 1 : 0);
@@ -145,10 +168,10 @@ class StepText {
     line("if (!s->square) return;");
     line("lanes sum = all_lanes(0.0), sum3 = all_lanes(0.0);");
     each_state([&](std::string_view i) {
-      std::string text = fmt::format(
-          "{{ const lanes scale = load(s->atol + 8 * (s->atol_each * {0}) + part) + load(s->rtol + 8 * (s->rtol_each * "
-          "{0}) + part) * greater(size_of(x[{0}]), size_of(end[{0}])); ",
-          i);
+      std::string text =
+          fmt::format("{{ const lanes scale = load({1}) + load({2}) * greater(size_of(x[{0}]), size_of(end[{0}])); ", i,
+                      element("s->atol", fmt::format("(s->atol_each * {})", i)),
+                      element("s->rtol", fmt::format("(s->rtol_each * {})", i)));
       const std::string first = sum(formula_.error, formula_.error.size(), i);
       text += has_two ? fmt::format("const lanes ratio = ({}) / scale; const lanes ratio3 = ({}) / scale; ", first,
                                     sum(formula_.second_error, formula_.second_error.size(), i))
@@ -166,12 +189,11 @@ class StepText {
   }
 
   void evaluate() {
-    text_ +=
-        "void evaluate(double *restrict registers, const double *x, double *y, const struct lane_step *step) {\n"
-        "  for (int part = 0; part < 8; part += WIDTH) {\n";
-    line(fmt::format("lanes r[{}];", tape_.register_count()));
-    each(tape_.register_count(), most_registers_unrolled,
-         [](std::string_view i) { return fmt::format("r[{0}] = load(registers + 8 * {0} + part);", i); });
+    text_ += fmt::format(
+        "void evaluate(double *restrict registers, const double *x, double *y, const struct lane_step *step) {{\n"
+        "  for (int part = 0; part < {}; part += WIDTH) {{\n",
+        runs_);
+    registers();
     if (!formula_.b.empty()) {
       line("if (step) {");
       line("take_step(r, step, part);");
@@ -180,23 +202,38 @@ class StepText {
     }
     line(fmt::format("lanes states[{}], rates_here[{}];", std::max<std::size_t>(states_, 1),
                      std::max<std::size_t>(tape_.output_count(), 1)));
-    each_state([](std::string_view i) { return fmt::format("states[{0}] = load(x + 8 * {0} + part);", i); });
+    each_state([this](std::string_view i) { return fmt::format("states[{}] = load({});", i, element("x", i)); });
     line("rates(r, states, rates_here);");
     each(tape_.output_count(), most_states_unrolled,
-         [](std::string_view i) { return fmt::format("store(rates_here[{0}], y + 8 * {0} + part);", i); });
+         [this](std::string_view i) { return fmt::format("store(rates_here[{}], {});", i, element("y", i)); });
     text_ += "  }\n}\n";
+  }
+  void registers() {
+    if (is_single()) return line("double *const r = registers;");
+    line(fmt::format("lanes r[{}];", tape_.register_count()));
+    each(tape_.register_count(), most_registers_unrolled,
+         [this](std::string_view i) { return fmt::format("r[{}] = load({});", i, element("registers", i)); });
   }
 
   const Tape& tape_;
   const CStepFormula& formula_;
-  std::size_t states_;
+  std::size_t runs_, states_;
   std::string text_;
 };
 
 }  // namespace
 
 std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula) {
-  return StepText(tape, formula).text();
+  return StepText(tape, formula, TapeLanes::width).text();
+}
+
+std::string c_step(const Tape& tape, const CStepFormula& formula) {
+  return StepText(tape, formula, 1).text();
+}
+
+bool is_worth_a_step(const Tape& tape, const CStepFormula& formula) {
+  const std::size_t states = tape.states_end() - tape.states_begin();
+  return states > 0 && states <= most_states_of_step && is_short(tape, formula);
 }
 
 }  // namespace continuo::model

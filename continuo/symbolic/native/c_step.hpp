@@ -22,8 +22,8 @@ struct CStepFormula {
   bool ends_with_f = false;              // the last stage is f at the end of the step
 };
 
-/// What a step of eight runs begins with and where it writes: of each quantity the numbers of all runs, one after the
-/// other. The text of the C function has the same struct.
+/// What a step of eight runs, or of one, begins with and where it writes: of each quantity the numbers of all runs, one
+/// after the other. The text of the C function has the same struct.
 struct LaneStep {
   const double *t, *x, *h;
   long long evaluates_start;       // 0: stages[0] has f at the start already
@@ -40,5 +40,11 @@ using NativeLaneEvaluation = void (*)(double* registers, const double* states, d
 
 /// The text of the function `evaluate`, but for what every text for a C compiler of ours begins with.
 [[nodiscard]] std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula);
+/// The same for one run, whose registers are those of the tape.
+[[nodiscard]] std::string c_step(const Tape& tape, const CStepFormula& formula);
+
+/// Whether one run gains by it: a state that fits the registers of the processor, and equations that are short enough
+/// to be written at each stage.
+[[nodiscard]] bool is_worth_a_step(const Tape& tape, const CStepFormula& formula);
 
 }  // namespace continuo::model

@@ -115,6 +115,14 @@ std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<
   return lanes;
 }
 
+std::shared_ptr<NativeFunction> NativeCompiler::step_code(const std::shared_ptr<const Tape>& tape,
+                                                          CStepFormula formula) {
+  const auto step = std::make_shared<NativeFunction>();
+  if (options_.use == NativeUse::never || !is_worth_a_step(*tape, formula)) return step;
+  provide(step, [tape, formula = std::move(formula)] { return whole_text(c_step(*tape, formula), *tape); });
+  return step;
+}
+
 void NativeCompiler::provide(const std::shared_ptr<NativeFunction>& function, std::function<std::string()> text) {
   const auto job = [text = std::move(text)](const std::shared_ptr<NativeFunction>& user) {
     return Job{text, [user](void* made, std::shared_ptr<const void> code) { user->use(made, std::move(code)); }};

@@ -62,6 +62,9 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   /// given: a NativeLaneEvaluation, for which nothing need be aligned. As `function`, and of this caller alone.
   [[nodiscard]] std::shared_ptr<NativeFunction> lane_code(const std::shared_ptr<const Tape>& tape,
                                                           CStepFormula formula = {});
+  /// The same for one run with steps of this method.
+  [[nodiscard]] std::shared_ptr<NativeFunction> step_code(const std::shared_ptr<const Tape>& tape,
+                                                          CStepFormula formula);
 
   struct Report {
     std::size_t compiled = 0;  // tapes and series, by the compiler
