@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <continuo/methods/explicit_rk/own_step.hpp>
 #include <continuo/methods/explicit_rk/tableau.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/hermite.hpp>
@@ -48,9 +49,10 @@ struct ExplicitRungeKutta {
   template <State X>
   struct Workspace {
     std::array<detail::Kept<X>, ExplicitRungeKutta::slots()> k;
-    X argument;                // of f, where X has no fixed size
-    bool start_fresh = false;  // k[0] is f at the start of the next step
-    bool end_fresh = false;    // k[end_slot()] is f at the end of the last step
+    X argument;                        // of f, where X has no fixed size
+    bool start_fresh = false;          // k[0] is f at the start of the next step
+    bool end_fresh = false;            // k[end_slot()] is f at the end of the last step
+    detail::OwnStep<Scalar<X>> own{};  // of a system that takes its steps itself
 
     /// For checkpoints: what the next step depends on.
     template <class Archive>
@@ -66,11 +68,23 @@ struct ExplicitRungeKutta {
     }(std::make_index_sequence<slots()>());
   }
 
+  /// By which a system that takes the steps itself measures their errors.
+  template <State X>
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+    if constexpr (!detail::Packed<X>) work.own.tolerance = tolerance;
+  }
+
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if constexpr (detail::Packed<X>) {
       return flat_step(system, t, x, h, discontinuity, work, x_new);
+    } else if constexpr (detail::TakesSteps<System, Derived, X>) {
+      work.start_fresh = work.start_fresh && !discontinuity;
+      work.own.has_square = false;
+      const int evaluations = static_cast<int>(Derived::tableau.stages) - (work.start_fresh ? 1 : 0);
+      if (system.template take_step<Derived>(t, x, h, work, x_new)) return evaluations;
+      return take_step(system, t, x, h, discontinuity, work, x_new);
     } else {
       return take_step(system, t, x, h, discontinuity, work, x_new);
     }
@@ -87,6 +101,7 @@ struct ExplicitRungeKutta {
   template <State X>
   [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                                               const Tolerance<Scalar<X>>& tolerance) {
+    if (work.own.is_measured_by(tolerance)) return work.own.square;
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto k = detail::stages_of<Error, X>(work.k);
     detail::Unit<X> sum{};
