@@ -50,6 +50,14 @@ class Evaluation {
     return outputs;
   }
 
+  /// Operations of an evaluation.
+  [[nodiscard]] std::size_t operations() const {
+    const Tape::Size size = tape_->size();
+    return std::max<std::size_t>(size.single + size.batched, 1);
+  }
+  /// Of the tape, for machine code that does more than to evaluate it.
+  [[nodiscard]] double* registers() { return registers_.data(); }
+
   /// Sets a variable that is no parameter: nothing was prepared with it.
   void place(std::uint32_t variable, double value) { registers_[variable] = value; }
   /// Sets a parameter, an input or a sample.
@@ -62,10 +70,6 @@ class Evaluation {
  private:
   /// Some twenty microseconds of work lie between two counts, so that counting costs nothing.
   static constexpr std::size_t operations_between_counts = 20'000;
-  [[nodiscard]] std::size_t operations() const {
-    const Tape::Size size = tape_->size();
-    return std::max<std::size_t>(size.single + size.batched, 1);
-  }
   [[nodiscard]] std::size_t evaluations_between_counts() const {
     return std::max<std::size_t>(operations_between_counts / operations(), 1);
   }

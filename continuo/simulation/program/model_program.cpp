@@ -204,13 +204,18 @@ std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes)
 }
 
 std::shared_ptr<const Tape> ModelProgram::shared_tape_of(std::span<const NodeId> nodes) const {
-  return shared_tapes.of(nodes, [this](std::span<const NodeId> wanted) { return tape_of(wanted); });
+  return shared_tapes.of({nodes.begin(), nodes.end()}, [&] { return tape_of(nodes); });
 }
 
 std::shared_ptr<const Tape> ModelProgram::busy_tape_of(std::span<const NodeId> nodes) const {
   std::shared_ptr<const Tape> tape = tape_of(nodes);
   if (model.native) model.native->watch(tape);
   return tape;
+}
+
+std::shared_ptr<NativeFunction> ModelProgram::step_code(std::size_t mode, StepFormula formula) const {
+  if (!model.native) return nullptr;
+  return step_codes.of({mode, formula}, [&] { return model.native->step_code(derivatives[mode], formula()); });
 }
 
 namespace {

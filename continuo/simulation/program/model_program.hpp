@@ -8,11 +8,14 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <continuo/language/model.hpp>
 #include <continuo/simulation/program/switches.hpp>
 #include <continuo/symbolic/graph/table.hpp>
+#include <continuo/symbolic/native/c_step.hpp>
+#include <continuo/symbolic/native/native_function.hpp>
 #include <continuo/symbolic/tape/tape.hpp>
 
 namespace continuo::model {
@@ -48,29 +51,33 @@ struct TableInput {
   Table table;
 };
 
-/// Tapes that every run of a program needs, each made once. Threads may share it. A copy is empty, because the
+/// What every run of a program needs, each part made once. Threads may share it. A copy is empty, because the
 /// expressions of a program that was copied may change.
-class SharedTapes {
+template <class Key, class Part>
+class SharedParts {
  public:
-  SharedTapes() = default;
-  SharedTapes(const SharedTapes&) {}
-  SharedTapes& operator=(const SharedTapes&) {
-    tapes_.clear();
+  SharedParts() = default;
+  SharedParts(const SharedParts&) {}
+  SharedParts& operator=(const SharedParts&) {
+    parts_.clear();
     return *this;
   }
-  /// The tape of these expressions, made by `make` where there is none yet.
+  /// The part of this key, made by `make` where there is none yet.
   template <class Make>
-  [[nodiscard]] std::shared_ptr<const Tape> of(std::span<const NodeId> nodes, const Make& make) {
+  [[nodiscard]] std::shared_ptr<Part> of(const Key& key, const Make& make) {
     const std::scoped_lock lock(mutex_);
-    std::shared_ptr<const Tape>& tape = tapes_[{nodes.begin(), nodes.end()}];
-    if (!tape) tape = make(nodes);
-    return tape;
+    std::shared_ptr<Part>& part = parts_[key];
+    if (!part) part = make();
+    return part;
   }
 
  private:
   std::mutex mutex_;
-  std::map<std::vector<NodeId>, std::shared_ptr<const Tape>> tapes_;
+  std::map<Key, std::shared_ptr<Part>> parts_;
 };
+
+/// Gives the numbers of a method; there is one for each.
+using StepFormula = CStepFormula (*)();
 
 struct ModelProgram {
   explicit ModelProgram(Model model_);
@@ -113,7 +120,11 @@ struct ModelProgram {
   /// The same of what every step evaluates: worth machine code, where the model has a compiler.
   [[nodiscard]] std::shared_ptr<const Tape> busy_tape_of(std::span<const NodeId> nodes) const;
 
-  mutable SharedTapes shared_tapes{};
+  /// Steps of the method in machine code, with the equations of this mode; null where the model has no compiler.
+  [[nodiscard]] std::shared_ptr<NativeFunction> step_code(std::size_t mode, StepFormula formula) const;
+
+  mutable SharedParts<std::vector<NodeId>, const Tape> shared_tapes{};
+  mutable SharedParts<std::pair<std::size_t, StepFormula>, NativeFunction> step_codes{};
 };
 
 /// Inputs with points follow them, whoever gave the points: the file of the model or a caller.

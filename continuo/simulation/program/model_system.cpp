@@ -28,6 +28,19 @@ ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<
     schedule_blocks_.emplace_back(block.tape, variables);
   }
   guard_values_.resize(program_->model.events.size());
+  step_codes_.resize(derivatives_.size());
+}
+
+NativeLaneEvaluation ModelSystem::step_code(StepFormula formula) {
+  if (!held_.empty() || has_switches()) return nullptr;
+  StepCode& step = step_codes_[mode_];
+  if (step.formula != formula) {
+    step = {formula, program_->step_code(mode_, formula), formula().b.size() * derivatives_[mode_].operations()};
+  }
+  if (!step.code) return nullptr;
+  void* const code = step.code->code();
+  if (code == nullptr) step.code->count(step.operations);
+  return reinterpret_cast<NativeLaneEvaluation>(code);
 }
 
 template <class Visit>

@@ -5,6 +5,7 @@
 //   ModelSystem system(program, start_values(model));
 //   system(t, x, dxdt);
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,6 +19,7 @@
 #include <continuo/simulation/program/model_derivatives.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/program/solution_series.hpp>
+#include <continuo/simulation/program/step_formula.hpp>
 #include <continuo/simulation/program/switched_motion.hpp>
 #include <continuo/system/system.hpp>
 
@@ -38,6 +40,10 @@ class ModelSystem {
     }
     for (const std::size_t i : held_) dxdt[i] = 0;
   }
+  /// A step of the explicit Runge-Kutta method M by machine code, as detail::TakesSteps says. False where there is none
+  /// (yet), where the jumps of the equations are located, and where states are held.
+  template <class M>
+  [[nodiscard]] bool take_step(double t, const X& x, double h, typename M::template Workspace<X>& work, X& x_new);
 
   [[nodiscard]] std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
@@ -126,6 +132,7 @@ class ModelSystem {
   template <class Visit>
   void for_each(Visit&& visit);
   void place_switches();
+  [[nodiscard]] NativeLaneEvaluation step_code(StepFormula formula);
   template <class Place>
   void take_differences(double t, const X& x, std::span<double> values, Place place);
   [[nodiscard]] ModelDerivatives& derivatives_of_f();
@@ -140,6 +147,40 @@ class ModelSystem {
   std::vector<Evaluation> derivatives_, guards_, truths_, event_blocks_, limit_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
   std::vector<std::size_t> held_;
+  /// Of one method; null where there is no compiler.
+  struct StepCode {
+    StepFormula formula = nullptr;
+    std::shared_ptr<NativeFunction> code;
+    std::uint64_t operations = 0;  // of a step
+  };
+  std::vector<StepCode> step_codes_;  // by mode
 };
+
+template <class M>
+bool ModelSystem::take_step(double t, const X& x, double h, typename M::template Workspace<X>& work, X& x_new) {
+  const NativeLaneEvaluation code = step_code(step_formula_of<M>);
+  if (code == nullptr) return false;
+  std::array<double*, M::tableau.stages> stages;
+  for (std::size_t j = 0; j < stages.size(); ++j) stages[j] = work.k[j].data();
+  auto& own = work.own;
+  const Tolerance<double>& tolerance = own.tolerance;
+  own.has_square = M::error_order > 0;
+  const LaneStep step{.t = &t,
+                      .x = x.data(),
+                      .h = &h,
+                      .evaluates_start = work.start_fresh ? 0 : 1,
+                      .keeps_stages = 1,
+                      .stages = stages.data(),
+                      .x_new = x_new.data(),
+                      .square = own.has_square ? &own.square : nullptr,
+                      .rtol = tolerance.rtol_each ? tolerance.rtol_each : &tolerance.rtol,
+                      .atol = tolerance.atol_each ? tolerance.atol_each : &tolerance.atol,
+                      .rtol_each = tolerance.rtol_each ? 1 : 0,
+                      .atol_each = tolerance.atol_each ? 1 : 0};
+  code(derivatives_[mode_].registers(), nullptr, nullptr, &step);
+  work.start_fresh = true;
+  work.end_fresh = M::tableau.first_same_as_last();
+  return true;
+}
 
 }  // namespace continuo::model

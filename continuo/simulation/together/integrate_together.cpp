@@ -1,8 +1,5 @@
 // Finds the runs in lanes of a method by its name, and its numbers.
 #include <array>
-#include <cstddef>
-#include <type_traits>
-#include <vector>
 
 #include <continuo/ensembles/lanes/pair_of_lane.hpp>
 #include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
@@ -12,38 +9,13 @@
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
 #include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/simulation/program/step_formula.hpp>
 #include <continuo/simulation/together/explicit_part.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
 
 namespace continuo::model {
 
 namespace {
-
-/// The weights that `weight` gives for the stages before `end`, as doubles.
-template <class Weight>
-std::vector<double> row(std::size_t end, const Weight& weight) {
-  std::vector<double> weights;
-  for (std::size_t j = 0; j < end; ++j) weights.push_back(Coefficient(weight(j)).template as<double>());
-  return weights;
-}
-
-template <class M>
-CStepFormula formula() {
-  constexpr auto& tableau = M::tableau;
-  constexpr std::size_t stages = tableau.stages;
-  CStepFormula made;
-  made.c = row(stages, [](std::size_t j) { return M::tableau.c[j]; });
-  made.b = row(stages, [](std::size_t j) { return M::tableau.b[j]; });
-  for (std::size_t s = 0; s < stages; ++s) made.a.push_back(row(s, [s](std::size_t j) { return M::tableau.a[s][j]; }));
-  if constexpr (std::is_base_of_v<Dop853, M>) {
-    made.error = row(stages, [](std::size_t j) { return dop853::error5[j]; });
-    made.second_error = row(stages, [](std::size_t j) { return M::tableau.b[j] - dop853::third_order[j]; });
-  } else if constexpr (M::error_order > 0) {
-    made.error = row(stages, [](std::size_t j) { return M::tableau.b[j] - M::tableau.embedded[j]; });
-  }
-  made.ends_with_f = tableau.first_same_as_last();
-  return made;
-}
 
 struct LanesOfMethod {
   std::string_view name;
@@ -53,8 +25,8 @@ struct LanesOfMethod {
 };
 
 template <class... M>
-constexpr auto lanes_of =
-    std::array{LanesOfMethod{M::name, integrate_together_by<M>, formula<M>, continuo::detail::PartOfPair<M>}...};
+constexpr auto lanes_of = std::array{
+    LanesOfMethod{M::name, integrate_together_by<M>, step_formula_of<M>, continuo::detail::PartOfPair<M>}...};
 
 constexpr auto methods_with_lanes =
     lanes_of<BogackiShampine3, DormandPrince5, Dop853, Rk4, Tsitouras5, Verner7, Verner9,
