@@ -52,6 +52,11 @@ endif()
 if(CONTINUO_NATIVE)
   target_compile_options(continuo_flags INTERFACE -march=native)
 endif()
+# Where the processor may have fused operations, the compiler must not make one of a product and a sum: a step of a
+# method gives the same bits as its machine code, which has none, and as that step in lanes.
+if(CONTINUO_NATIVE OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(continuo_flags INTERFACE -ffp-contract=off)
+endif()
 if(CONTINUO_SANITIZE)
   # Left out of `undefined`: what the address sanitizer reports as a bad address anyway (null, object-size), and the
   # checks of every reference for its alignment and its class (alignment, vptr), which double the time of a build and
