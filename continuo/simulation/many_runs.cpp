@@ -4,6 +4,7 @@
 
 #include <continuo/simulation/drive/run_checks.hpp>
 #include <continuo/simulation/many_runs.hpp>
+#include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
@@ -20,7 +21,12 @@ struct Planned {
   std::vector<Diagnostic> problems{};
   std::vector<SampledState> samples{};  // at the times that checks ask for
   std::size_t next_sample = 0;
+  std::vector<RecordedEvent> events{};
+  EventNames names{};
 };
+
+/// What runs of a model can go together by.
+enum class Company { none, plain, with_events };
 
 bool agree(const Plan& a, const Plan& b) {
   return a.method == b.method && a.rtol == b.rtol && a.rtol_each == b.rtol_each && a.atol == b.atol &&
@@ -43,14 +49,15 @@ std::size_t steps_together(const Plan& plan, std::size_t limit) {
 }
 
 /// The runs [first, last) go together.
-class Together final : public RunWatcher<X> {
+class Together final : public RunWatcher<X>, public SeenRuns {
  public:
-  using CodeFor = std::function<std::shared_ptr<NativeFunction>(const std::string& method)>;
+  using CodeFor = std::function<std::shared_ptr<NativeFunction>(const std::string& method, std::size_t mode)>;
 
-  Together(const std::shared_ptr<const ModelProgram>& program, CodeFor code_for,
+  Together(const std::shared_ptr<const ModelProgram>& program, bool has_events, CodeFor code_for,
            std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
            std::span<Planned> planned, const OnJudged& done)
       : program_(program),
+        has_events_(has_events),
         code_for_(std::move(code_for)),
         experiments_(experiments),
         watchers_(watchers),
@@ -65,13 +72,12 @@ class Together final : public RunWatcher<X> {
     first_ = first;
     goes_on_ = true;
     const Plan& plan = *planned_[first].plan;
-    if (!equations_ || method_ != plan.method) {
-      method_ = plan.method;
-      equations_.emplace(*program_, code_for_(method_));
-    }
+    if (method_ != plan.method) make_equations(plan.method);
     is_watched_ = false;
     for (std::size_t i = first; i < last; ++i) begin(i);
-    integrate_together(method_, {.equations = *equations_,
+    TogetherRuns::Equations equations = equations_ ? &*equations_ : nullptr;
+    if (has_events_) equations = &*mode_equations_;
+    integrate_together(method_, {.equations = equations,
                                  .interval = {plan.from, plan.to},
                                  .options = options(first),
                                  .count = last - first,
@@ -106,8 +112,30 @@ class Together final : public RunWatcher<X> {
     }
     if (MotionWatcher* seeing = watcher(i)) seeing->on_piece(to, at);
   }
+  [[nodiscard]] Integration integration(std::size_t run) override {
+    const std::size_t i = first_ + run;
+    return integration_of(program_, *planned_[i].plan, experiments_[i]);
+  }
+  void on_event(std::size_t run, const ModelEvents& events, const EventOccurrence<X>& now) override {
+    const std::size_t i = first_ + run;
+    Planned& one = planned_[i];
+    for (EventName& name : one.names.of(events, now.events, true))
+      one.events.push_back({std::move(name.event), std::move(name.mark), now.t, now.before, now.after});
+    for (std::size_t k = one.next_sample; k-- > 0 && one.samples[k].t == now.t;) one.samples[k].x = now.after;
+    if (MotionWatcher* seeing = watcher(i)) seeing->on_jump(now.t, now.before, now.after);
+  }
 
  private:
+  void make_equations(const std::string& method) {
+    method_ = method;
+    if (!has_events_) {
+      equations_.emplace(*program_, code_for_(method_, 0));
+      return;
+    }
+    std::vector<std::shared_ptr<NativeFunction>> codes;
+    for (std::size_t mode = 0; mode < program_->derivatives.size(); ++mode) codes.push_back(code_for_(method_, mode));
+    mode_equations_.emplace(program_, codes, *this);
+  }
   [[nodiscard]] MotionWatcher* watcher(std::size_t i) const { return watchers_.empty() ? nullptr : watchers_[i]; }
 
   [[nodiscard]] X first_state(std::size_t i) const {
@@ -117,7 +145,9 @@ class Together final : public RunWatcher<X> {
   }
   [[nodiscard]] RunStart<X, X> start(std::size_t run) const {
     const std::size_t i = first_ + run;
-    return {first_state(i), LaneEquations::parameters(i + 1, planned_[i].plan->variables)};
+    const std::vector<double>& variables = planned_[i].plan->variables;
+    return {first_state(i),
+            has_events_ ? mode_equations_->parameters(i + 1, variables) : LaneEquations::parameters(i + 1, variables)};
   }
 
   void begin(std::size_t i) {
@@ -143,7 +173,7 @@ class Together final : public RunWatcher<X> {
     options.max_steps = steps_together(plan, one.max_steps);
     options.interrupt = one.interrupt;
     options.threads = 1;
-    options.watcher = is_watched_ ? this : nullptr;
+    options.watcher = is_watched_ && !has_events_ ? this : nullptr;
     options.finished = [this](const RunResult<X, X>& result) { return goes_on_ = goes_on_ && finish(result); };
     return options;
   }
@@ -154,6 +184,7 @@ class Together final : public RunWatcher<X> {
     if (!succeeded(ending) && ending != Ending::interrupted) return run_alone(i);
     run_.plan = std::move(*planned_[i].plan);
     run_.outcome = result.outcome;
+    run_.events = std::move(planned_[i].events);
     run_.motion.values.assign(1, result.outcome.t);
     run_.motion.values.insert(run_.motion.values.end(), result.x.begin(), result.x.end());
     JudgedRun judged{
@@ -163,9 +194,11 @@ class Together final : public RunWatcher<X> {
   }
 
   const std::shared_ptr<const ModelProgram>& program_;
+  bool has_events_;
   CodeFor code_for_;
-  std::string method_;  // that the code of the equations is for
-  std::optional<LaneEquations> equations_;
+  std::string method_;                      // that the code of the equations is for
+  std::optional<LaneEquations> equations_;  // one of the two is used
+  std::optional<ModeEquations> mode_equations_;
   std::span<const Experiment> experiments_;
   std::span<MotionWatcher* const> watchers_;
   std::span<Planned> planned_;
@@ -193,28 +226,31 @@ std::size_t end_of_group(std::span<const Planned> planned, std::span<const Exper
 // of N equations by rk4).
 constexpr std::size_t most_states_together = 64;
 
-bool is_plain_motion(const ModelProgram& program) {
+Company company_of(const ModelProgram& program) {
   const Model& model = program.model;
   const auto asks_for_extremes = [](const Check& check) {
     return check.measure == Measure::always || check.measure == Measure::energy_drift;
   };
-  if (model.has_world() || model.needs_boundary_solver() || model.needs_dae_solver()) return false;
-  if (model.states.empty() || model.states.size() > most_states_together) return false;
-  return model.modes.size() == 1 && model.events.empty() && model.schedule.empty() && program.step_inputs.empty() &&
-         std::ranges::all_of(program.switches, [](const SwitchedEquations& one) { return one.empty(); }) &&
-         std::ranges::none_of(model.checks, asks_for_extremes);
+  if (model.has_world() || model.needs_boundary_solver() || model.needs_dae_solver()) return Company::none;
+  if (model.states.empty() || model.states.size() > most_states_together) return Company::none;
+  const bool can = program.step_inputs.empty() &&
+                   std::ranges::all_of(program.switches, [](const SwitchedEquations& one) { return one.empty(); }) &&
+                   std::ranges::none_of(model.checks, asks_for_extremes);
+  if (!can) return Company::none;
+  const bool is_plain = model.modes.size() == 1 && model.events.empty() && model.schedule.empty();
+  return is_plain ? Company::plain : Company::with_events;
 }
 
 }  // namespace
 
 ManyRuns::ManyRuns(std::shared_ptr<const ModelProgram> program)
-    : program_(std::move(program)), can_go_together_(is_plain_motion(*program_)) {}
+    : program_(std::move(program)), can_go_together_(company_of(*program_) != Company::none) {}
 
-std::shared_ptr<NativeFunction> ManyRuns::code_for(const std::string& method) const {
+std::shared_ptr<NativeFunction> ManyRuns::code_for(const std::string& method, std::size_t mode) const {
   if (!program_->model.native) return nullptr;
   const std::scoped_lock lock(mutex_);
-  std::shared_ptr<NativeFunction>& code = codes_[method];
-  if (!code) code = program_->model.native->lane_code(program_->derivatives.front(), step_formula(method));
+  std::shared_ptr<NativeFunction>& code = codes_[{method, mode}];
+  if (!code) code = program_->model.native->lane_code(program_->derivatives[mode], step_formula(method));
   return code;
 }
 
@@ -224,7 +260,9 @@ void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWat
   for (std::size_t i = 0; can_go_together_ && i < experiments.size(); ++i)
     planned[i].plan = plan_run(*program_, experiments[i], planned[i].problems);
   Together runs(
-      program_, [this](const std::string& method) { return code_for(method); }, experiments, watchers, planned, done);
+      program_, company_of(*program_) == Company::with_events,
+      [this](const std::string& method, std::size_t mode) { return code_for(method, mode); }, experiments, watchers,
+      planned, done);
   for (std::size_t first = 0, last = 0; first < experiments.size(); first = last) {
     last = can_go_together_ ? end_of_group(planned, experiments, first) : first + 1;
     if (!(last > first + 1 ? runs.run(first, last) : runs.run_alone(first))) return;

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <continuo/simulation/motion_watcher.hpp>
@@ -38,8 +39,8 @@ class ManyRuns {
   /// Of this model.
   explicit ManyRuns(std::shared_ptr<const ModelProgram> program);
 
-  /// Whether runs of it can go together: some tens of ordinary differential equations at most, without events, without
-  /// jumps and modes, with checks that ask for no extremes over the run.
+  /// Whether runs of it can go together: some tens of ordinary differential equations at most, without jumps and
+  /// without inputs that step, with checks that ask for no extremes over the run.
   [[nodiscard]] bool can_go_together() const { return can_go_together_; }
 
   /// Makes the runs, which are handed over in their order. `watchers`: none, or for each run one that sees it, or null.
@@ -49,13 +50,13 @@ class ManyRuns {
             const OnJudged& done) const;
 
  private:
-  /// The machine code of the equations with the steps of this method; null where nobody compiles any.
-  [[nodiscard]] std::shared_ptr<NativeFunction> code_for(const std::string& method) const;
+  /// The machine code of a mode's equations with the steps of this method; null where nobody compiles any.
+  [[nodiscard]] std::shared_ptr<NativeFunction> code_for(const std::string& method, std::size_t mode) const;
 
   std::shared_ptr<const ModelProgram> program_;
   bool can_go_together_;
   mutable std::mutex mutex_;
-  mutable std::map<std::string, std::shared_ptr<NativeFunction>> codes_;  // by method
+  mutable std::map<std::pair<std::string, std::size_t>, std::shared_ptr<NativeFunction>> codes_;  // by method and mode
 };
 
 }  // namespace continuo::model

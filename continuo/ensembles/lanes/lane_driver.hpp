@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <continuo/ensembles/lanes/lane_sizes.hpp>
+#include <continuo/ensembles/lanes/own_runs.hpp>
 #include <continuo/ensembles/lanes/pair_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_queue.hpp>
@@ -103,8 +104,10 @@ class LaneDriver {
   using Wide = Lanes<double, W>;
   using WideX = ReboundState<X, Wide>;
   using WideP = ReboundState<P, Wide>;
-  using Run = RunOfLane<F, X, P, M, E...>;
+  using Run = typename RunKind<F, X, P, M, E...>::Type;
   using Source = typename Run::Source;
+
+  static constexpr bool has_own_runs = HasOwnRuns<F, M>;
 
   // What happens to a lane at the end of its step.
   enum class Next : char { step, ended, begins_anew };
@@ -140,7 +143,9 @@ class LaneDriver {
       one.end(Ending::invalid_input, "its start has another number of components or parameters than that of run 0");
       return finish(lane);
     }
-    one.begin(run, std::move(start)) ? begin_motion(lane) : finish(lane);
+    if (!one.begin(run, std::move(start))) return finish(lane);
+    if constexpr (PartOfPair<M>) pairs_[lane].begin(one.x());
+    begin_motion(lane);
   }
   // The motion of a lane begins, or begins anew after an event, where its run is.
   void begin_motion(std::size_t lane) {
@@ -151,7 +156,7 @@ class LaneDriver {
       size = one.steps().first_size(limit, settings_.options, one.result().outcome);
       if (size == 0) return finish(lane);
     }
-    if constexpr (PartOfPair<M>) pairs_[lane].begin(one.x());
+    if constexpr (PartOfPair<M>) pairs_[lane].begin_anew();
     put(one.x(), lane, x_);
     put(one.p(), lane, system_.p);
     sizes_.begin_motion(lane, one.t(), size, limit);
@@ -219,8 +224,9 @@ class LaneDriver {
     };
     if constexpr (takes_steps) {
       const bool wants_square = M::error_order > 0 && !sizes_.fixed();
-      has_square_ = f_.template take_step<M>(sizes_.t(), x_, sizes_.h(), system_.p, work_, x_new_, tolerance_.all(),
-                                             wants_square ? &square_ : nullptr, has_rows_ || Source::any_guard);
+      has_square_ =
+          f_.template take_step<M>(sizes_.t(), x_, sizes_.h(), system_.p, work_, x_new_, tolerance_.all(),
+                                   wants_square ? &square_ : nullptr, has_rows_ || has_own_runs || Source::any_guard);
     }
     return has_square_;
   }
@@ -244,7 +250,7 @@ class LaneDriver {
   // Runs that their pair would continue by its stiff method end here.
   void leave_stiff_ones(const std::array<Next, W>& next) {
     for (std::size_t lane = 0; lane < W; ++lane) {
-      if (!sizes_.is_active(lane) || !sizes_.accepted()[lane] || next[lane] == Next::ended) continue;
+      if (!sizes_.is_active(lane) || !sizes_.accepted()[lane] || next[lane] != Next::step) continue;
       if (pairs_[lane].accept()) continue;
       set_place(lane);
       runs_[lane].end(Ending::cannot_continue);
@@ -323,16 +329,24 @@ class LaneDriver {
     sizes_.judge_fixed(zero_if_all_finite(x_new_));
   }
 
+  [[nodiscard]] bool any_guard() const {
+    if constexpr (has_own_runs) {
+      return f_.any_guard();
+    } else {
+      return Source::any_guard;
+    }
+  }
+
   // The accepted lanes go on to the end of their steps, and what happens on the way happens.
   void commit() {
     std::array<Next, W> next{};
     Wide asked(0.0);  // lanes whose run has evaluated the polynomial of the step
     bool any_next = false;
-    if constexpr (Source::any_guard) {
+    if (any_guard()) {
       interpolate();
       asked = Wide(1.0);
       any_next = look_at_lanes(near_guards(), next, asked);
-    } else if (Source::any_scheduled || has_rows_) {
+    } else if (Source::any_scheduled || has_own_runs || has_rows_) {
       any_next = look_at_lanes(typename Wide::Mask(false), next, asked);
     } else if (any(sizes_.at_limit())) {
       any_next = true;
@@ -379,7 +393,7 @@ class LaneDriver {
 
   // Lets the runs of those lanes pass their step in which there is something: a guard near to zero, a row, a tick.
   [[nodiscard]] bool look_at_lanes(const typename Wide::Mask& near, std::array<Next, W>& next, Wide& asked) {
-    bool any_next = false, interpolated = Source::any_guard;
+    bool any_next = false, interpolated = any_guard();
     for (std::size_t lane = 0; lane < W; ++lane) {
       if (!sizes_.is_active(lane) || !sizes_.accepted()[lane]) continue;
       Run& one = runs_[lane];
@@ -401,17 +415,29 @@ class LaneDriver {
     get(x_, lane, step.begin);
     get(x_new_, lane, step.end);
     for (std::size_t j = 0; j < polynomial_.c.size(); ++j) get(polynomial_.c[j], lane, step.polynomial.c[j]);
+    if constexpr (PartOfPair<M>) {
+      pairs_[lane].x() = step.begin;
+      get(work_.k[0], lane, pairs_[lane].slope());
+      one.steps().set_pair(pairs_[lane]);
+    }
     const bool changed = one.pass_step();
-    if (!Source::any_guard && one.steps().asked()) asked.set(lane, 1.0);
+    if (one.steps().asked()) asked.set(lane, 1.0);
     if (one.ended()) return Next::ended;
     if (changed) return Next::begins_anew;
-    if (Source::any_scheduled) sizes_.set_limit(lane, one.limit());
+    if (Source::any_scheduled || has_own_runs) sizes_.set_limit(lane, one.limit());
     return Next::step;
   }
 
   // The lanes in which a guard may cross zero in the step: it does not where its distance from zero exceeds its whole
   // range over nine places of the step, see EventLocator.
   [[nodiscard]] typename Wide::Mask near_guards() {
+    if constexpr (has_own_runs) {
+      return Run::near_guards(runs_, sizes_, polynomial_);
+    } else {
+      return near_sampled_guards();
+    }
+  }
+  [[nodiscard]] typename Wide::Mask near_sampled_guards() {
     std::array<Wide, Source::count> least, greatest;
     const auto sample = [&](bool first, const Wide& t, const WideX& x) {
       std::size_t i = 0;

@@ -12,8 +12,15 @@ namespace continuo::detail {
 template <class M>
 concept PartOfPair = requires { typename M::Pair; };
 
+/// Of a method on its own: nothing. Its steps end at no event.
 template <class M, State X>
-class PairOfLane {};  // of a method on its own: nothing
+class PairOfLane {
+ public:
+  template <class System>
+  void retake(System&, double, double, X&) {}
+  template <class System, class Polynomial>
+  void interpolate(System&, double, double, const X&, Polynomial&) {}
+};
 
 template <PartOfPair M, State X>
 class PairOfLane<M, X> {
@@ -27,7 +34,12 @@ class PairOfLane<M, X> {
   }
 
   /// A run begins at x.
-  void begin(const X& x) { Pair::forget(work_, x); }
+  void begin(const X& x) {
+    Pair::forget(work_, x);
+    begins_ = true;
+  }
+  /// The motion begins anew after an event: what was learnt of the system stays.
+  void begin_anew() { begins_ = true; }
 
   /// Whether `look` reads the state and the slope at the start of the step, which are to be put here before.
   [[nodiscard]] bool is_probe_due() const { return Pair::is_probe_due(work_); }
@@ -36,8 +48,23 @@ class PairOfLane<M, X> {
   /// After every step, accepted or not.
   template <class System>
   void look(System& system, double t, double h) {
+    if (begins_) work_.in_favour = 0;
     if (is_probe_due()) work_.nonstiff.k[0] = keep(slope_);
     static_cast<void>(Pair::watch_step(system, t, x_, h, work_));
+  }
+
+  /// Takes the step once more, to end at an event, as the pair does: from `x()`, with the slope there in `slope()`.
+  template <class System>
+  void retake(System& system, double t, double h, X& x_new) {
+    Pair::retaken(work_);
+    work_.nonstiff.k[0] = keep(slope_);
+    work_.nonstiff.start_fresh = true;
+    static_cast<void>(Pair::step(system, t, x_, h, begins_, work_, x_new));
+  }
+  /// The polynomial of a step that was taken so.
+  template <class System, class Polynomial>
+  void interpolate(System& system, double t, double h, const X& x_new, Polynomial& polynomial) {
+    static_cast<void>(Pair::interpolate(system, t, x_, h, x_new, work_, polynomial));
   }
 
   /// The factor of the norm of the step's error.
@@ -45,12 +72,14 @@ class PairOfLane<M, X> {
 
   /// The step is accepted. False where the next one would be of the stiff method.
   [[nodiscard]] bool accept() {
+    begins_ = false;
     Pair::accept(work_);
     return !work_.is_stiff;
   }
 
  private:
   X x_, slope_;
+  bool begins_ = true;  // no step has been accepted since
   typename Pair::template Workspace<X> work_;
 };
 

@@ -7,40 +7,65 @@
 #include <string>
 #include <utility>
 
+#include <continuo/ensembles/lanes/pair_of_lane.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
 namespace continuo::detail {
+
+/// The degree of the polynomial of a step, as one run alone has it: that of a pair is the greater one of both methods.
+template <class M>
+inline constexpr int degree_in_lanes = M::dense_degree;
+template <PartOfPair M>
+inline constexpr int degree_in_lanes<M> = M::Pair::dense_degree;
 
 template <class System, State X, class M>
 class RunSteps final : public Steps<System, X> {
   using Base = Steps<System, X>;
 
  public:
-  RunSteps(System system, const X& x, double forward) : Base(std::move(system), x, 0.0, forward), polynomial_(x) {}
+  RunSteps(System system, const X& x, double forward) : Base(std::move(system), x, 0.0, forward), polynomial_(x) {
+    for (X& coefficient : polynomial_.c)
+      for (std::size_t i = 0; i < dimension(x); ++i) coefficient.data()[i] = 0;
+  }
 
   [[nodiscard]] std::unique_ptr<Base> clone() const override { return std::make_unique<RunSteps>(*this); }
   [[nodiscard]] MethodNeeds needs(const X& x) const override { return needs_of<M>(this->system_, x); }
-  [[nodiscard]] bool take(double, const Options<X>&, Outcome<double>&) override { return false; }  // lanes do
-  std::span<const X> dense_output() override {
-    asked_ = true;
-    return polynomial_.c;
+  /// The lanes take the steps. A driver that asks for one that they have not taken yet is told that the run has come to
+  /// its end: it goes on once that is extended.
+  [[nodiscard]] bool take(double limit, const Options<X>&, Outcome<double>& outcome) override {
+    limit_ = limit;
+    waits_ = !std::exchange(has_step_, false);
+    if (waits_) outcome = {.ending = Ending::reached_end, .t = this->end_};
+    return !waits_;
   }
-  void at_part(double theta, X& x) override {
-    asked_ = true;
-    polynomial_(theta, x);
-  }
+  /// Whether the driver waits for a step, and how far that may go.
+  [[nodiscard]] bool waits() const { return waits_; }
+  [[nodiscard]] double limit() const { return limit_; }
+  std::span<const X> dense_output() override { return polynomial().c; }
+  void at_part(double theta, X& x) override { polynomial()(theta, x); }
   void at_parts(std::span<const double, Base::parts_at_once> thetas, std::span<X, Base::parts_at_once> xs) override {
-    asked_ = true;
-    polynomial_(thetas, xs);
+    polynomial()(thetas, xs);
   }
-  [[nodiscard]] bool lands() const override { return false; }
-  [[nodiscard]] bool retake(double, const Options<X>&) override { return false; }
+  /// Of a pair the steps end at events, as where its stiff method takes them.
+  [[nodiscard]] bool lands() const override { return PartOfPair<M>; }
+  [[nodiscard]] bool retake(double size, const Options<X>&) override {
+    pair_->retake(this->system_, this->begin_, size, this->x_end_);
+    this->h_ = size;
+    this->end_ = this->begin_ + size;
+    this->interpolated_ = false;
+    is_retaken_ = true;
+    return this->finite_end();
+  }
   void move_end(const X&) override {}
+
+  /// What the pair knows of this run.
+  void set_pair(PairOfLane<M, X>& pair) { pair_ = &pair; }
 
   /// A new run: no step yet.
   void begin_run(double t, const X& x, const Options<X>& options) {
     this->h_ = 0;
     this->step_begin_ = t;
+    has_step_ = waits_ = false;
     this->statistics_ = {};
     this->jump(t, x, options);
   }
@@ -56,17 +81,20 @@ class RunSteps final : public Steps<System, X> {
   /// The step that the lanes have taken; its ends and its polynomial are written to the references.
   struct Ends {
     X &begin, &end;
-    Interpolant<X, M::dense_degree>& polynomial;
+    Interpolant<X, degree_in_lanes<M>>& polynomial;
   };
   [[nodiscard]] Ends took(double begin, double size, double end) {
     this->begin_ = this->step_begin_ = begin;
     this->h_ = size;
     this->end_ = end;
     this->jumped_ = false;
-    asked_ = false;
+    asked_ = waits_ = is_retaken_ = false;
+    has_step_ = true;
     return {this->x_begin_, this->x_end_, polynomial_};
   }
 
+  /// Whether the step has been taken again, with another end.
+  [[nodiscard]] bool is_retaken() const { return is_retaken_; }
   /// Whether the polynomial of the step has been evaluated.
   [[nodiscard]] bool asked() const { return asked_; }
 
@@ -88,8 +116,17 @@ class RunSteps final : public Steps<System, X> {
   }
 
  private:
-  Interpolant<X, M::dense_degree> polynomial_;
-  bool asked_ = false;
+  [[nodiscard]] const Interpolant<X, degree_in_lanes<M>>& polynomial() {
+    asked_ = true;
+    if (is_retaken_ && !std::exchange(this->interpolated_, true))
+      pair_->interpolate(this->system_, this->begin_, this->h_, this->x_end_, polynomial_);
+    return polynomial_;
+  }
+
+  Interpolant<X, degree_in_lanes<M>> polynomial_;
+  PairOfLane<M, X>* pair_ = nullptr;
+  double limit_ = 0;
+  bool asked_ = false, has_step_ = false, waits_ = false, is_retaken_ = false;
 };
 
 }  // namespace continuo::detail

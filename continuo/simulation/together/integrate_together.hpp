@@ -4,11 +4,13 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <continuo/ensembles/ensemble_options.hpp>
 #include <continuo/ensembles/run_start.hpp>
 #include <continuo/simulation/together/lane_equations.hpp>
+#include <continuo/simulation/together/mode_equations.hpp>
 #include <continuo/symbolic/native/c_step.hpp>
 
 namespace continuo::model {
@@ -17,7 +19,9 @@ namespace continuo::model {
 struct TogetherRuns {
   using X = std::vector<double>;
 
-  const LaneEquations& equations;
+  using Equations = std::variant<const LaneEquations*, const ModeEquations*>;  // without and with events
+
+  Equations equations;
   Interval<double> interval;
   EnsembleOptions<X, X> options;
   std::size_t count;

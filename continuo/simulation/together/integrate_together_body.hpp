@@ -2,13 +2,17 @@
 #pragma once
 #include <continuo/ensembles/ensemble.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
+#include <continuo/simulation/together/run_of_model.hpp>
 
 namespace continuo::model {
 
 template <class M>
 void integrate_together_by(const TogetherRuns& runs) {
-  static_cast<void>(ensemble<LaneEquations::Wide::width>(runs.equations, starts(runs.count, runs.start), runs.interval,
-                                                         M{}, runs.options));
+  const auto integrate = [&](const auto* equations) {
+    static_cast<void>(ensemble<LaneEquations::Wide::width>(*equations, starts(runs.count, runs.start), runs.interval,
+                                                           M{}, runs.options));
+  };
+  std::visit(integrate, runs.equations);
 }
 
 }  // namespace continuo::model

@@ -17,9 +17,9 @@ constexpr std::uint64_t between_counts = 20'000;
 
 }  // namespace
 
-LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code)
+LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode)
     : autonomous(program.autonomous),
-      tape_(program.derivatives.front()),
+      tape_(program.derivatives[mode]),
       code_(std::move(code)),
       operations_(cost_of_operation * (tape_->size().single + tape_->size().batched)),
       states_begin_(tape_->states_begin()),

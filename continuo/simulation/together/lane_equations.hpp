@@ -25,9 +25,9 @@ class LaneEquations {
   static constexpr std::size_t lanes = TapeLanes::width;  // at once, and no others
   using Wide = Lanes<double, lanes>;
 
-  /// Of a model with one mode, whose equations do not jump. `code`: their machine code, with the steps of the method
+  /// Those of a mode of a model whose equations do not jump. `code`: their machine code, with the steps of the method
   /// that is used, or null.
-  LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code);
+  LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode = 0);
 
   /// The parameters of a run with these variables. `number` is not that of any other run, and at least 1.
   [[nodiscard]] static std::vector<double> parameters(std::size_t number, std::span<const double> variables);
