@@ -67,10 +67,14 @@ class SeriesNumber {
   friend SeriesNumber operator+(const SeriesNumber& a) { return a; }
   friend SeriesNumber operator-(const SeriesNumber& a) { return of(SeriesCode::negate, a, -a.value_); }
   friend SeriesNumber operator+(const SeriesNumber& a, const SeriesNumber& b) {
-    return of(SeriesCode::add, a, b, a.value_ + b.value_);
+    const Real value = a.value_ + b.value_;
+    if (a.is_constant()) return of(SeriesCode::add_number, b, a, value);
+    return of(b.is_constant() ? SeriesCode::add_number : SeriesCode::add, a, b, value);
   }
   friend SeriesNumber operator-(const SeriesNumber& a, const SeriesNumber& b) {
-    return of(SeriesCode::subtract, a, b, a.value_ - b.value_);
+    const Real value = a.value_ - b.value_;
+    if (b.is_constant()) return of(SeriesCode::add_number, a, SeriesNumber(-b.value_), value);
+    return of(a.is_constant() ? SeriesCode::subtract_from_number : SeriesCode::subtract, a, b, value);
   }
   friend SeriesNumber operator*(const SeriesNumber& a, const SeriesNumber& b) {
     const Real value = a.value_ * b.value_;

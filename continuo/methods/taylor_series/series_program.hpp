@@ -34,8 +34,10 @@ enum class SeriesCode : std::uint8_t {
   add,
   subtract,
   negate,
-  scale,             // a b, where a has no coefficient but that of order 0
-  divide_by_number,  // a / b, where b has none
+  add_number,            // a + b, where b has no coefficient but that of order 0
+  subtract_from_number,  // a - b, where a has none
+  scale,                 // a b, where a has none
+  divide_by_number,      // a / b, where b has none
   product,
   square,
   quotient,
@@ -117,6 +119,10 @@ class SeriesProgram {
   /// The n-th number that was added is another one from the next `begin` on.
   void set_number(std::size_t n, const Real& value) { numbers_[n].value = value; }
   [[nodiscard]] std::size_t number_count() const { return numbers_.size(); }
+  /// The number in this register, which has one.
+  [[nodiscard]] const Real& number_in(Register place) const {
+    return std::ranges::find(numbers_, place, &Number::place)->value;
+  }
   /// The results of `count` equal operations, side by side as their operands are. Of those with two results, the
   /// second ones follow the first ones.
   [[nodiscard]] Register add(SeriesCode code, Register a, Register b = 0, Register c = 0, std::uint32_t count = 1) {
@@ -270,6 +276,13 @@ class SeriesProgram {
   void step_functions(const Operation& o);
   void table(const Operation& o, std::size_t k);
   [[nodiscard]] Real power_at_zero(std::size_t k, Register a, Register result, const Real& p);
+  /// a^p. Powers of distances by roots, in a third of the time.
+  [[nodiscard]] static Real power_of(const Real& a, const Real& p) {
+    using std::pow, std::sqrt;
+    if (p == Real(1.5)) return a * sqrt(a);
+    if (p == Real(-1.5)) return Real(1) / (a * sqrt(a));
+    return pow(a, p);
+  }
 
   std::vector<Operation> operations_;
   std::vector<Number> numbers_;
@@ -321,6 +334,12 @@ inline bool SeriesProgram<Real>::evaluate_sums(const Operation& o, std::size_t k
       return all([&](std::uint32_t i) { return a[i] - b[i]; });
     case SeriesCode::negate:
       return all([&](std::uint32_t i) { return -a[i]; });
+    case SeriesCode::add_number:
+      if (k == 0) return all([&](std::uint32_t i) { return a[i] + b[i]; });
+      return all([&](std::uint32_t i) { return a[i]; });
+    case SeriesCode::subtract_from_number:
+      if (k == 0) return all([&](std::uint32_t i) { return a[i] - b[i]; });
+      return all([&](std::uint32_t i) { return -b[i]; });
     case SeriesCode::scale:
       return all([&, factor = row(0) + o.a](std::uint32_t i) { return factor[i] * b[i]; });
     case SeriesCode::divide_by_number: {
@@ -428,7 +447,7 @@ void SeriesProgram<Real>::begin_functions(const Operation& o) {
         r[i] = log(a[i]);
         break;
       case SeriesCode::power:
-        r[i] = pow(a[i], b[0]);
+        r[i] = power_of(a[i], b[0]);
         break;
       case SeriesCode::sine_cosine:
         r[i] = sin(a[i]), second[i] = cos(a[i]);

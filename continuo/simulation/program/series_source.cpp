@@ -1,6 +1,10 @@
 // Writes the recurrences of Taylor series as C.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -20,24 +24,26 @@ constexpr std::string_view helpers =
 double sinh(double), cosh(double), tanh(double), exp(double), log(double), pow(double, double);
 double sqrt(double), floor(double), ceil(double);
 #define INLINE static inline __attribute__((always_inline))
+#define PURE static __attribute__((pure))
 typedef double two __attribute__((vector_size(16), aligned(8), may_alias));
 typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+INLINE two pair(double a, double b) { return (two){a, b}; }
 INLINE double plain(long j, double p, long k) { return 1; }
 INLINE double weighted(long j, double p, long k) { return (double)j; }
 INLINE double of_power(long j, double p, long k) { return (p + 1) * (double)j - (double)k; }
-static double in_order(const double *a, const double *b, long k, long first, long last) {
+PURE double in_order(const double *a, const double *b, long k, long first, long last) {
   double total = 0;
   for (long j = first; j <= last; ++j) total += (double)j * (a[j * S] * b[(k - j) * S]);
   return total;
 }
-static int sign_of(const double *u, const double *v, long k) {
+PURE int sign_of(const double *u, const double *v, long k) {
   for (long j = 0; j <= k; ++j) {
     const double difference = v ? u[j * S] - v[j * S] : u[j * S];
     if (difference != 0) return difference < 0 ? -1 : 1;
   }
   return 0;
 }
-static double power_at_zero(const double *a, const double *r, double p, long k) {
+PURE double power_at_zero(const double *a, const double *r, double p, long k) {
   long m = 0, first = 0;
   while (m <= k && a[m * S] == 0) ++m;
   if (m > k) return 0 * p;
@@ -70,6 +76,7 @@ class SeriesWriter {
         use_(program.register_count(), Use::row),
         source_(program.register_count()) {
     find_uses();
+    if (is_written_out()) find_pairs();
     std::uint32_t count = 0;
     for (std::uint32_t place = 0; place < use_.size(); ++place)
       if (use_[place] == Use::once) source_[place] = count++;
@@ -78,8 +85,11 @@ class SeriesWriter {
 
   std::string text() {
     line("double t[{}];", once_count_ + 1);
-    line("w[{}] = scale;", row_);
-    for (std::size_t k = 2; k <= order_; ++k) line("w[{}] = 0;", k * row_);
+    line("two q[{}];", order_ * pairs_.size() + 1);
+    if (reads_time()) {
+      line("w[{}] = scale;", row_);
+      for (std::size_t k = 2; k <= order_; ++k) line("w[{}] = 0;", k * row_);
+    }
     all({true, 0});
     if (is_written_out()) {
       for (std::size_t k = 1; k < order_; ++k) all({true, k});
@@ -128,8 +138,17 @@ class SeriesWriter {
   static bool is_linear(SeriesCode code) { return code >= SeriesCode::add && code <= SeriesCode::divide_by_number; }
   /// Of a number, coefficient 0 is read.
   static bool is_number(SeriesCode code, std::size_t operand) {
-    return operand == (code == SeriesCode::scale ? 0U : 1U) &&
-           (code == SeriesCode::scale || code == SeriesCode::divide_by_number || code == SeriesCode::power);
+    switch (code) {
+      case SeriesCode::scale:
+      case SeriesCode::subtract_from_number:
+        return operand == 0;
+      case SeriesCode::add_number:
+      case SeriesCode::divide_by_number:
+      case SeriesCode::power:
+        return operand == 1;
+      default:
+        return false;
+    }
   }
 
   /// Where coefficients are kept: those that nothing reads but linear operations of the same order in an array that
@@ -159,6 +178,15 @@ class SeriesWriter {
     }
   }
   void need(std::uint32_t place) { use_[place] = Use::row; }
+  [[nodiscard]] bool reads_time() const {
+    const auto copied = program_.copied();
+    return std::ranges::find(copied, 0U) != copied.end() || std::ranges::find(derivatives_, 0U) != derivatives_.end() ||
+           std::ranges::any_of(program_.operations(), [](const SeriesOperation& o) {
+             const std::array operands{o.a, o.b, o.c};
+             const auto read = std::span(operands).first(operand_count(o.code));
+             return o.code != SeriesCode::copy && std::ranges::find(read, 0U) != read.end();
+           });
+  }
   static std::size_t operand_count(SeriesCode code) {
     switch (code) {
       case SeriesCode::negate:
@@ -204,11 +232,16 @@ class SeriesWriter {
   }
 
   void all(Order order) {
-    for (const SeriesOperation& o : program_.operations()) {
+    placed_.clear();
+    const std::span<const SeriesOperation> operations = program_.operations();
+    for (std::size_t i = 0; i < operations.size(); ++i) {
+      const SeriesOperation& o = operations[i];
       if (o.code >= SeriesCode::table_slope) {
-        if (order.is_number && order.k == 0) each(o, [&](std::string_view i) { assign(o, order, i, step(o, i)); });
-      } else {
+        if (order.is_number && order.k == 0) each(o, [&](std::string_view m) { assign(o, order, m, step(o, m)); });
+      } else if (const auto one = pair_of_.find(i); one == pair_of_.end()) {
         operation(o, order);
+      } else if (one->second > i) {
+        both(o, operations[one->second], order);
       }
     }
     // Coefficient k + 1 of the states.
@@ -289,7 +322,12 @@ class SeriesWriter {
       case SeriesCode::subtract:
         return set([&](std::string_view i) { return a(i) + " - " + b(i); });
       case SeriesCode::negate:
-        return set([&](std::string_view i) { return "-" + a(i); });
+        return set([&](std::string_view i) { return fmt::format("-{}", a(i)); });
+      case SeriesCode::add_number:
+        return set([&](std::string_view i) { return is_first ? a(i) + " + " + start(o.b, i) : a(i); });
+      case SeriesCode::subtract_from_number:
+        return set(
+            [&](std::string_view i) { return is_first ? start(o.a, i) + " - " + b(i) : fmt::format("-{}", b(i)); });
       case SeriesCode::scale:
         return set([&](std::string_view i) { return start(o.a, i) + " * " + b(i); });
       case SeriesCode::divide_by_number:
@@ -379,7 +417,7 @@ class SeriesWriter {
         case SeriesCode::logarithm:
           return of("log");
         case SeriesCode::power:
-          return line("{} = pow({}, {});", r, a, start(o.b, ""));
+          return line("{} = {};", r, power_of(o, a));
         case SeriesCode::sine_cosine:
           return line("{} = sin({}), {} = cos({});", r, a, second, a);
         case SeriesCode::hyperbolic_sine_cosine:
@@ -418,9 +456,9 @@ class SeriesWriter {
   /// finish(i, sum) is written for all members.
   template <class Finish>
   void by_sum(const SeriesOperation& o, Order order, const Sum& sum, Finish&& finish) {
-    const std::string p = sum.weight == "of_power" ? start(o.b, "") : "0";
+    const std::string p = sum.weight == "of_power" ? exponent_text(o) : "0";
     if (o.count == 1) {
-      line("{{ const double s = {};", order.is_number ? terms(sum, order.k, p) : call(sum, order, p, 1, "0", ""));
+      line("{{ const double s = {};", order.is_number ? terms(o, sum, order.k) : call(sum, order, p, 1, "0", ""));
       finish("", "s");
       return line("}}");
     }
@@ -451,21 +489,130 @@ class SeriesWriter {
                        begin, p, order_text(order), sum.first, last_text(sum.last, order), result);
   }
 
-  /// The terms of a sum one by one, in the order of SeriesProgram.
-  [[nodiscard]] std::string terms(const Sum& sum, std::size_t k, const std::string& p) const {
+  /// The terms of a sum one by one, in the order of SeriesProgram. factor(register, k) is written for coefficient k.
+  template <class Factor>
+  [[nodiscard]] std::string terms(const SeriesOperation& o, const Sum& sum, std::size_t k, Factor&& factor) const {
     const std::size_t first = sum.first, last = last_of(sum.last, k);
     const auto term = [&](std::size_t j) {
-      const std::string product = fmt::format("w[{}] * w[{}]", j * row_ + sum.a, (k - j) * row_ + sum.b);
+      const std::string product = factor(sum.a, j) + " * " + factor(sum.b, k - j);
       if (sum.weight == "plain") return product;
       if (sum.weight == "weighted") return fmt::format("{}.0 * ({})", j, product);
-      return fmt::format("(({} + 1) * {}.0 - {}.0) * ({})", p, j, k, product);
+      const double weight = (exponent(o) + 1) * static_cast<double>(j) - static_cast<double>(k);
+      return fmt::format("{} * ({})", number_text(weight), product);
     };
-    std::string even = "-0.0", odd = "-0.0";
-    for (std::size_t j = first + 1; j < last; ++j) ((j - first) % 2 == 1 ? even : odd) += " + " + term(j);
-    std::string result = fmt::format("(({}) + ({}))", even, odd);
-    if (first <= last) result = fmt::format("({} + {})", result, term(first));
-    if (first < last) result = fmt::format("({} + {})", result, term(last));
-    return result;
+    // A sum begins with -0, which changes nothing; so it is left out.
+    std::string even, odd;
+    const auto add = [](std::string& to, const std::string& what) {
+      to = to.empty() ? what : fmt::format("{} + {}", to, what);
+    };
+    for (std::size_t j = first + 1; j < last; ++j) add((j - first) % 2 == 1 ? even : odd, term(j));
+    if (!odd.empty()) even = fmt::format("({}) + ({})", even, odd);
+    if (first <= last) even = even.empty() ? term(first) : fmt::format("({}) + {}", even, term(first));
+    if (first < last) even = fmt::format("({}) + {}", even, term(last));
+    return even;
+  }
+  [[nodiscard]] std::string terms(const SeriesOperation& o, const Sum& sum, std::size_t k) const {
+    const std::string sum_text =
+        terms(o, sum, k, [this](std::uint32_t place, std::size_t j) { return fmt::format("w[{}]", j * row_ + place); });
+    return sum_text.empty() ? "-0.0" : sum_text;
+  }
+
+  [[nodiscard]] double exponent(const SeriesOperation& o) const { return program_.number_in(o.b); }
+  [[nodiscard]] std::string exponent_text(const SeriesOperation& o) const { return number_text(exponent(o)); }
+  /// To the bit.
+  static std::string number_text(double number) {
+    return std::isnan(number)   ? "__builtin_nan(\"\")"
+           : std::isinf(number) ? (number > 0 ? "__builtin_inf()" : "(-__builtin_inf())")
+                                : fmt::format("({:a})", number);
+  }
+  /// See SeriesProgram::power_of.
+  [[nodiscard]] std::string power_of(const SeriesOperation& o, const std::string& a) const {
+    if (exponent(o) == 1.5) return fmt::format("{} * sqrt({})", a, a);
+    if (exponent(o) == -1.5) return fmt::format("1 / ({} * sqrt({}))", a, a);
+    return fmt::format("pow({}, {})", a, exponent_text(o));
+  }
+
+  // ---- two operations in the halves of one register
+
+  using Pair = std::array<std::uint32_t, 2>;
+
+  /// Of operations with sums, which are alone, those that two can be computed of together: the same one, the second of
+  /// which reads nothing that the first one or what comes between them computes.
+  void find_pairs() {
+    constexpr std::size_t farthest = 12;
+    const std::span<const SeriesOperation> operations = program_.operations();
+    for (std::size_t i = 0; i < operations.size(); ++i) {
+      const SeriesOperation& o = operations[i];
+      if (!is_paired(o.code) || o.count != 1 || pair_of_.contains(i)) continue;
+      for (std::size_t j = i + 1; j < std::min(operations.size(), i + farthest); ++j) {
+        const SeriesOperation& other = operations[j];
+        const bool is_alike = other.code == o.code && other.count == 1 && !pair_of_.contains(j);
+        if (!is_alike || std::max(other.a, other.code == SeriesCode::square ? 0 : other.b) >= o.result) continue;
+        pair_of_[i] = j;
+        pair_of_[j] = i;
+        for (const Pair& pair : operands_of(o, other))
+          if (pair[0] != pair[1]) pairs_.try_emplace(pair, pairs_.size());
+        break;
+      }
+    }
+  }
+  static bool is_paired(SeriesCode code) {
+    return code == SeriesCode::product || code == SeriesCode::square || code == SeriesCode::quotient;
+  }
+  /// The factors of their sums.
+  static std::array<Pair, 2> operands_of(const SeriesOperation& o, const SeriesOperation& other) {
+    const Pair a{o.a, other.a}, b{o.b, other.b}, result{o.result, other.result};
+    if (o.code == SeriesCode::square) return {a, a};
+    return {o.code == SeriesCode::quotient ? b : a, o.code == SeriesCode::quotient ? result : b};
+  }
+  /// Coefficients k of two registers as one, which `place` has placed where they are kept so.
+  [[nodiscard]] std::string pair_at(const Pair& pair, std::size_t k) const {
+    const auto kept = pairs_.find(pair);
+    if (kept != pairs_.end()) return fmt::format("q[{}]", k * pairs_.size() + kept->second);
+    return fmt::format("pair(w[{}], w[{}])", k * row_ + pair[0], k * row_ + pair[1]);
+  }
+  void place(const Pair& pair, std::size_t k) {
+    const auto kept = pairs_.find(pair);
+    if (kept == pairs_.end() || !placed_.insert(pair).second) return;
+    line("q[{}] = pair(w[{}], w[{}]);", k * pairs_.size() + kept->second, k * row_ + pair[0], k * row_ + pair[1]);
+  }
+  void both(const SeriesOperation& o, const SeriesOperation& other, Order order) {
+    const std::size_t k = order.k;
+    const Pair a{o.a, other.a}, b{o.b, other.b}, result{o.result, other.result};
+    const auto operands = operands_of(o, other);
+    for (const Pair& operand : operands)
+      if (operand != result) place(operand, k);
+    if (k == 0) {
+      value(o);
+      value(other);
+      return place(result, k);
+    }
+    const Sum sum = sum_of(o);
+    const auto factor = [&](std::uint32_t place, std::size_t j) {
+      return pair_at(place == operands[0][0] ? operands[0] : operands[1], j);
+    };
+    const std::string sum_text = terms(o, sum, k, factor);
+    line("{{ const two s = {};", sum_text.empty() ? "pair(-0.0, -0.0)" : sum_text);
+    if (o.code == SeriesCode::product) {
+      line("const two r = s;");
+    } else if (o.code == SeriesCode::quotient) {
+      line("const two r = ({} - s) * (1 / {});", pair_at(a, k), pair_at(b, 0));
+    } else {
+      const std::string middle = k % 2 == 1 ? "" : fmt::format(" + {} * {}", pair_at(a, k / 2), pair_at(a, k / 2));
+      line("const two r = (2 * s{}) + 2 * {} * {};", middle, pair_at(a, 0), pair_at(a, k));
+    }
+    line("w[{}] = r[0]; w[{}] = r[1];", k * row_ + result[0], k * row_ + result[1]);
+    if (const auto kept = pairs_.find(result); kept != pairs_.end()) {
+      placed_.insert(result);
+      line("q[{}] = r;", k * pairs_.size() + kept->second);
+    }
+    line("}}");
+  }
+  /// Of a product, a square or a quotient.
+  static Sum sum_of(const SeriesOperation& o) {
+    if (o.code == SeriesCode::product) return {o.a, o.b, 0, Sum::Last::order};
+    if (o.code == SeriesCode::square) return {o.a, o.a, 1, Sum::Last::half};
+    return {o.b, o.result, 1, Sum::Last::order};
   }
 
   /// The sums of some members, in vectors that do not overlap.
@@ -524,14 +671,14 @@ class SeriesWriter {
     using Last = Sum::Last;
     switch (o.code) {
       case SeriesCode::product:
-        return by_sum(o, order, {o.a, o.b, 0, Last::order}, result(o.result, "{s}"));
+        return by_sum(o, order, sum_of(o), result(o.result, "{s}"));
       case SeriesCode::square:
-        return by_sum(o, order, {o.a, o.a, 1, Last::half}, [&](std::string_view i, std::string_view s) {
+        return by_sum(o, order, sum_of(o), [&](std::string_view i, std::string_view s) {
           line("{} = ({}) + 2 * {} * {};", at(order, o.result, i), both_halves(order, o.a, i, s), start(o.a, i),
                at(order, o.a, i));
         });
       case SeriesCode::quotient:
-        return by_sum(o, order, {o.b, o.result, 1, Last::order}, [&](std::string_view i, std::string_view s) {
+        return by_sum(o, order, sum_of(o), [&](std::string_view i, std::string_view s) {
           line("{} = ({} - {}) * (1 / {});", at(order, o.result, i), at(order, o.a, i), s, start(o.b, i));
         });
       case SeriesCode::square_root:
@@ -553,7 +700,7 @@ class SeriesWriter {
         by_sum(o, order, {o.a, o.result, 1, Last::order, "of_power"}, [&](std::string_view i, std::string_view s) {
           line("{} = {} * (1 / {} * (1 / {}));", at(order, o.result, i), s, k, start(o.a, i));
         });
-        return at_zero(o, order, o.a, start(o.b, ""));
+        return at_zero(o, order, o.a, exponent_text(o));
       case SeriesCode::sine_cosine:
       case SeriesCode::hyperbolic_sine_cosine:
         by_sum(o, order, {o.a, second, 1, Last::order, "weighted"}, result(o.result, by_order));
@@ -605,6 +752,9 @@ class SeriesWriter {
   std::vector<Use> use_;               // by register
   std::vector<std::uint32_t> source_;  // of a copy; of what is kept once its place
   std::size_t once_count_ = 0;
+  std::map<std::size_t, std::size_t> pair_of_;  // by operation
+  std::map<Pair, std::size_t> pairs_;           // of registers that are kept so
+  std::set<Pair> placed_;                       // in the order that is written
   std::string text_;
 };
 

@@ -49,7 +49,7 @@ struct SolutionSeries::Program {
   std::vector<Number> numbers{};
   std::vector<double> exponents{};  // as they are now
 
-  std::shared_ptr<const SeriesProgram<double>> written{};  // `series`, for machine code
+  std::shared_ptr<const SeriesProgram<double>> written{};  // `series` with its exponents, for machine code
   std::size_t members = 0;                                 // of all operations
   bool is_compiled = false;                                // as soon as that pays
   std::shared_ptr<NativeFunction> function{};              // of this order and these derivatives
@@ -272,15 +272,18 @@ class SeriesCompiler {
     const Node& node = graph_[id];
     switch (node.op) {
       case Op::add:
-        return add(SeriesCode::add, a, b);
+        if (!moves(node.a)) return add(SeriesCode::add_number, b, a);
+        return add(moves(node.b) ? SeriesCode::add : SeriesCode::add_number, a, b);
       case Op::subtract:
-        return add(SeriesCode::subtract, a, b);
+        return add(moves(node.a) ? SeriesCode::subtract : SeriesCode::subtract_from_number, a, b);
       case Op::negate:
         return add(SeriesCode::negate, a);
       case Op::multiply:
         if (!moves(node.a)) return add(SeriesCode::scale, a, b);
         if (!moves(node.b)) return add(SeriesCode::scale, b, a);
-        return node.a == node.b ? add(SeriesCode::square, a) : add(SeriesCode::product, a, b);
+        if (node.a == node.b) return add(SeriesCode::square, a);
+        // The newest coefficient of the first factor comes last into the sum: it is that which is known later.
+        return add(SeriesCode::product, std::max(a, b), std::min(a, b));
       case Op::divide:
         return add(moves(node.b) ? SeriesCode::quotient : SeriesCode::divide_by_number, a, b);
       case Op::power:
@@ -311,7 +314,7 @@ class SeriesCompiler {
       case Op::hyperbolic_tangent:
         return add(SeriesCode::hyperbolic_tangent, a);
       case Op::arc_tangent:
-        return add(SeriesCode::arc_tangent, a, add(SeriesCode::add, add(SeriesCode::square, a), numbers(1)));
+        return add(SeriesCode::arc_tangent, a, add(SeriesCode::add_number, add(SeriesCode::square, a), numbers(1)));
       case Op::arc_sine:
         return add(SeriesCode::arc_sine, a, root_of_one_less_square(a));
       case Op::arc_cosine:
@@ -380,7 +383,8 @@ class SeriesCompiler {
   }
   Register root_of_one_less_square(Register a) {
     const Register one = numbers(1);
-    const Register product = add(SeriesCode::product, add(SeriesCode::subtract, one, a), add(SeriesCode::add, one, a));
+    const Register product =
+        add(SeriesCode::product, add(SeriesCode::subtract_from_number, one, a), add(SeriesCode::add_number, a, one));
     return add(SeriesCode::square_root, product);
   }
 
@@ -465,14 +469,26 @@ class Sharing {
     return graph_.multiply(root, root);
   }
 
+  /// Of a power with a fraction the inverse is a power too: one recurrence, where the quotient would be another.
   NodeId quotient(NodeId a, NodeId b) {
     if (!moves(b)) return graph_.divide(a, b);
-    if (is_turned(a)) return graph_.negate(graph_.divide(turned(a), b));
+    if (graph_[b].op != Op::power || !is_fraction(graph_[b].b))
+      return shared(a, [&](NodeId part) { return graph_.divide(part, b); });
+    const NodeId inverse = graph_.power(graph_[b].a, graph_.negate(graph_[b].b));
+    return shared(a, [&](NodeId part) { return graph_.multiply(part, inverse); });
+  }
+  [[nodiscard]] bool is_fraction(NodeId id) const {
+    return graph_[id].op == Op::constant && graph_[id].value != std::floor(graph_[id].value);
+  }
+  /// of(a), without a sign and factors that do not move.
+  template <class Of>
+  NodeId shared(NodeId a, Of&& of) {
+    if (is_turned(a)) return graph_.negate(of(turned(a)));
     const Node node = graph_[a];
-    if (node.op != Op::multiply || moves(node.a) == moves(node.b)) return graph_.divide(a, b);
+    if (node.op != Op::multiply || moves(node.a) == moves(node.b)) return of(a);
     const NodeId factor = moves(node.a) ? node.b : node.a, part = moves(node.a) ? node.a : node.b;
-    if (is_turned(part)) return graph_.multiply(graph_.negate(factor), graph_.divide(turned(part), b));
-    return graph_.multiply(factor, graph_.divide(part, b));
+    if (is_turned(part)) return graph_.multiply(graph_.negate(factor), of(turned(part)));
+    return graph_.multiply(factor, of(part));
   }
 
   /// Whether it depends on the time or a state.
@@ -507,7 +523,7 @@ void SolutionSeries::Program::renew() {
     SeriesCompiler(*this, exponents_now).compile();
     function.reset();
     is_compiled = is_worth_compiling(series);
-    if (native && is_compiled) written = std::make_shared<const SeriesProgram<double>>(series);
+    written.reset();
     members = 0;
     for (const SeriesOperation& o : series.operations()) members += o.count;
   }
@@ -519,18 +535,21 @@ void SolutionSeries::Program::renew() {
   auto value = values.begin();
   for (std::size_t n = 0; n < numbers.size(); ++n)
     series.set_number(n, numbers[n].node.valid() ? *value++ : numbers[n].value);
+  if (native && is_compiled && !written) written = std::make_shared<const SeriesProgram<double>>(series);
   is_stale = false;
 }
 
 /// What the text of the function is made of, as bytes.
 std::string key_of(const SeriesProgram<double>& series, std::span<const Register> rates, std::size_t order) {
-  std::string key = "series 3";
+  std::string key = "series 4";
   const auto append = [&](const auto& list) {
     for (const auto part : list) key.append(reinterpret_cast<const char*>(&part), sizeof part);
   };
   append(std::array{order, rates.size(), series.row_size()});
-  for (const SeriesOperation& o : series.operations())
+  for (const SeriesOperation& o : series.operations()) {
     append(std::array{static_cast<std::uint32_t>(o.code), o.result, o.count, o.a, o.b, o.c});
+    if (o.code == SeriesCode::power) append(std::array{series.number_in(o.b)});
+  }
   append(series.copied());
   append(rates);
   return key;
