@@ -249,6 +249,19 @@ TEST(SeriesProgram, MembersSideBySideAreAsOneByOne) {
   }
 }
 
+// To what the polynomials are said to be off by, over all exponents and on both sides of every power of two.
+TEST(CoarsePower, IsNearTheExactOne) {
+  for (int exponent = -1000; exponent <= 1000; exponent += 8) {
+    for (const double m : {1.0, 1.0 + 1e-15, 1.1, 1.26, 1.41, 1.5, 1.7, 1.9, 2 - 1e-15}) {
+      const double x = std::ldexp(m, exponent);
+      EXPECT_NEAR(detail::coarse_log2(x), std::log2(x), 1.2e-4) << x;
+      const double y = exponent + (m - 1.5);
+      EXPECT_NEAR(detail::coarse_exp2(y) / std::exp2(y), 1, 1e-4) << y;
+    }
+  }
+  EXPECT_LT(detail::coarse_log2(0.0), -1021);
+}
+
 constexpr auto kepler = [](auto, const auto& x, auto& dxdt) {
   using std::sqrt;
   const auto r2 = x[0] * x[0] + x[1] * x[1], r3 = r2 * sqrt(r2);

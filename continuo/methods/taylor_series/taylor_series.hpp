@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -26,6 +27,7 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>  // the greater one
+#include <continuo/methods/taylor_series/coarse_power.hpp>
 #include <continuo/methods/taylor_series/series_number.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/system/rebound_state.hpp>
@@ -235,12 +237,13 @@ struct TaylorSeries {
       const std::array<Real, 2> parts{Real(before[i] * weight), Real(last[i] * weight)};
       for (std::size_t j = 0; j < 2; ++j) squares[j] += parts[j] * parts[j];
     }
-    Real longest = Real(greatest_factor) * abs(h);
     for (std::size_t j = 0; j < 2; ++j) {
-      const Real allowed = allowance<Real>(p, p - 1 + j), square = squares[j] * (allowed * allowed) / number<Real>(n);
-      if (square > Real(0)) longest = min(longest, Real(abs(next.scale) * inverse_root(square, 2 * (p - 1 + j))));
+      const Real allowed = allowance<Real>(p, p - 1 + j);
+      squares[j] *= allowed * allowed * (Real(1) / number<Real>(n));
     }
-    return longest / abs(h) * safety<Real>(p);
+    if (!detail::is_finite(Real(squares[0] + squares[1]))) return factor;
+    return min(Real(greatest_factor), Real(abs(next.scale / h) * least_inverse_root(squares, 2 * (p - 1)))) *
+           safety<Real>(p);
   }
 
   template <class System, State X>
@@ -315,15 +318,20 @@ struct TaylorSeries {
       if (n % 2 == 1) result *= x;
     return result;
   }
-  /// x^(-1/n). A step size needs no more than the digits of a float, which come sooner.
+  /// The lesser of x_0^(-1/n) and x_1^(-1/(n + 2)); very long where x is 0.
   template <class Real>
-  [[nodiscard]] static Real inverse_root(const Real& x, std::size_t n) {
-    using std::pow;
+  [[nodiscard]] static Real least_inverse_root(const std::array<Real, 2>& x, std::size_t n) {
+    using std::max, std::min, std::pow;
+    const std::array<Real, 2> inverse{Real(1) / number<Real>(n), Real(1) / number<Real>(n + 2)};
     if constexpr (std::is_same_v<Real, double>) {
-      if (x > 1e-37 && x < 1e37)
-        return static_cast<double>(std::exp2(std::log2(static_cast<float>(x)) / -static_cast<float>(n)));
+      const double log = max(inverse[0] * detail::coarse_log2(x[0]), inverse[1] * detail::coarse_log2(x[1]));
+      return detail::coarse_exp2(-log);
+    } else {
+      Real least = std::numeric_limits<Real>::max();
+      for (std::size_t j = 0; j < 2; ++j)
+        if (x[j] > Real(0)) least = min(least, Real(pow(x[j], -inverse[j])));
+      return least;
     }
-    return pow(x, -Real(1) / number<Real>(n));
   }
   /// e^(-0.7/(p - 1))
   template <class Real>
