@@ -62,12 +62,13 @@ void StepEnclosure::set(std::uint32_t variable, double value) {
 }
 
 Enclosure<double> StepEnclosure::component_over(const Step& step, std::size_t i, double from, double to) {
-  if (from == 0 && to == 1) {
+  // Nearly always the part is the whole step, but for the rounding of its end; where it is the rest behind an event,
+  // the range over the whole is so cheap that it pays to ask by that first.
+  if (from != to) {
     const std::vector<double>* const c = step.coefficients.data();
     return enclose_whole_polynomial<double>(step.coefficients.size(), [c, i](std::size_t j) { return c[j][i]; });
   }
-  const std::span<const double> polynomial = component_.of(step, i);
-  return from == to ? polynomial_at(polynomial, from) : enclose_polynomial(polynomial, from, to).value;
+  return polynomial_at(component_.of(step, i), from);
 }
 
 }  // namespace continuo::model
