@@ -254,16 +254,11 @@ struct TaylorSeries {
     using Real = Scalar<X>;
     const Real theta = h / work.now().scale;
     const std::size_t n = dimension(x_new);
-    const Real* c = work.now().c.data();
     Real factor(1);
-    for (std::size_t k = 0; k < interpolant.c.size(); ++k, factor *= theta, c += n) {
-      Real* const to = interpolant.c[k].data();
-      if (k <= work.order) {
-        for (std::size_t i = 0; i < n; ++i) to[i] = factor * c[i];
-      } else {
-        std::fill_n(to, n, Real(0));
-      }
-    }
+    std::size_t k = 0;
+    for (; k <= work.order; ++k, factor *= theta)
+      scale_row(work.now().c.data() + k * n, factor, n, interpolant.c[k].data());
+    for (; k < interpolant.c.size(); ++k) std::fill_n(interpolant.c[k].data(), n, Real(0));
     return 0;
   }
 
@@ -350,6 +345,25 @@ struct TaylorSeries {
   template <State X>
   [[nodiscard]] static const Scalar<X>* first_coefficients(const Expansion<X>& expansion) {
     return expansion.c.data() + expansion.c.size() / (dense_degree + 1);
+  }
+  /// A loop of a few components takes less time than what decides how to make it one of vectors.
+  template <class Real>
+  static void scale_row(const Real* row, const Real& factor, std::size_t n, Real* to) {
+    const auto first = [&]<std::size_t count>() {
+      for (std::size_t i = 0; i < count; ++i) to[i] = factor * row[i];
+    };
+    switch (n) {
+      case 1:
+        return first.template operator()<1>();
+      case 2:
+        return first.template operator()<2>();
+      case 3:
+        return first.template operator()<3>();
+      case 4:
+        return first.template operator()<4>();
+      default:
+        for (std::size_t i = 0; i < n; ++i) to[i] = factor * row[i];
+    }
   }
   /// What coefficients p - 1 and p are multiplied by, for their terms in units of a tolerance.
   template <State X>
