@@ -108,11 +108,16 @@ void SeenRun::pass(SeenRuns& seen, std::size_t run) {
 void SeenRun::look() {
   Look found;
   transfer(found, [](auto&, auto&) {});
-  is_at_zero_ = found.is_at_zero();
+  is_at_zero_ = false;  // where there is no guard, nothing has been given a side
   constants_ = found.take_constants();
   next_scheduled_ = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < events().size(); ++i)
-    if (!events().is_guard(i)) next_scheduled_ = std::min(next_scheduled_, events().next_time(i, t(), false));
+  for (std::size_t i = 0; i < events().size(); ++i) {
+    if (events().is_guard(i)) {
+      is_at_zero_ = found.is_at_zero();
+    } else {
+      next_scheduled_ = std::min(next_scheduled_, events().next_time(i, t(), false));
+    }
+  }
 }
 
 void SeenRun::move_on(double t, X x) {
