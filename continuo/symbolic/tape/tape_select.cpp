@@ -110,6 +110,7 @@ class Selector {
 
   std::vector<Selected> select() {
     std::vector<Selected> chosen;
+    chosen.reserve(graph_.size());  // memory that is not written to costs nothing; moving a grid's operations does
     for (std::uint32_t i = static_cast<std::uint32_t>(graph_.size()); i-- > 0;) {
       const NodeId id{i};
       if (!needed_[i] || arity(graph_[id].op) == 0) continue;

@@ -21,11 +21,8 @@ class Gatherer {
     uses_.resize(top);
     split_.resize(top);
     for (const NodeId output : outputs) ++uses_[output.index];
-    divisions_.resize(top);
-    for (const NodeId id : nodes_) {
+    for (const NodeId id : nodes_)
       for (const NodeId argument : arguments(from_[id])) ++uses_[argument.index];
-      if (from_[id].op == Op::divide) ++divisions_[from_[id].b.index];
-    }
   }
 
   Prepared gather(std::span<const NodeId> outputs) {
@@ -119,7 +116,7 @@ class Gatherer {
   const std::function<bool(std::uint32_t)>& is_steady_;
   Graph to_;
   std::vector<NodeId> nodes_;
-  std::vector<std::uint32_t> uses_, divisions_;
+  std::vector<std::uint32_t> uses_;
   std::vector<Split> split_;
 };
 

@@ -69,6 +69,7 @@ void make_room(Workspace& workspace) {
 std::vector<State> name_states(Expressions& expressions) {
   Workspace& workspace = expressions.workspace;
   std::vector<State> states;
+  states.reserve(workspace.layout.unknowns - workspace.layout.states);
   for (std::size_t b = 0; b < workspace.declared.bases.size(); ++b) {
     const Base& base = workspace.declared.bases[b];
     for (int k = 0; k < base.order; ++k) {
