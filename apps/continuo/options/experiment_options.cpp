@@ -319,9 +319,11 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
     const auto use = options.native == "always" ? model::NativeUse::always : model::NativeUse::automatic;
     prepared.loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = use});
   }
-  prepared.program = model::compile(*prepared.loaded.model);
+  // The program has the only copy: that of a grid takes half a gigabyte.
+  prepared.program = model::compile(*std::exchange(prepared.loaded.model, std::nullopt));
+  const model::Model& model = prepared.program->model;
   if (options.native == "always") {
-    if (const std::string trouble = prepared.loaded.model->native->report().trouble; !trouble.empty())
+    if (const std::string trouble = model.native->report().trouble; !trouble.empty())
       say(fmt::format("without machine code: {}", trouble));
   }
   prepared.experiment = {.method = options.method,
@@ -332,9 +334,9 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
                          .max_step = options.max_step,
                          .max_steps = options.max_steps,
                          .interrupt = &interrupt_flag()};
-  auto initial = read_initial(*prepared.loaded.model, options);
+  auto initial = read_initial(model, options);
   if (initial) prepared.experiment.initial = std::move(*initial);
-  if (!initial || !read_tolerances(*prepared.loaded.model, options, prepared.experiment)) prepared.exit = usage;
+  if (!initial || !read_tolerances(model, options, prepared.experiment)) prepared.exit = usage;
   return prepared;
 }
 

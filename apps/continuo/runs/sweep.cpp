@@ -155,8 +155,8 @@ model::Overrides parameters_of(const Sweep& sweep, std::size_t member, const Pre
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     if (sweep.axes[a].is_initial) continue;
     parameters[sweep.axes[a].name] = sweep.value(member, a);
-    const std::size_t i = find_parameter(*base.loaded.model, sweep.axes[a].name);
-    decides_size = decides_size || (i != model::npos && base.loaded.model->parameters[i].structural);
+    const std::size_t i = find_parameter(base.program->model, sweep.axes[a].name);
+    decides_size = decides_size || (i != model::npos && base.program->model.parameters[i].structural);
   }
   return parameters;
 }
@@ -177,7 +177,7 @@ void run_member(const Sweep& sweep, std::size_t index, const Prepared& base, con
       member.simulated.diagnostics = std::move(loaded.diagnostics);
       return;
     }
-    member.program = model::compile(*loaded.model);
+    member.program = model::compile(*std::move(loaded.model));
   }
   const model::Model& model = member.program->model;
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
@@ -254,7 +254,7 @@ std::optional<Sweep> read_sweep(const std::vector<SweepText>& texts, const Prepa
   double size = 1;
   for (const SweepText& text : texts) {
     SweepAxis axis;
-    if (!read_axis(*base.loaded.model, text, axis)) return std::nullopt;
+    if (!read_axis(base.program->model, text, axis)) return std::nullopt;
     const bool is_set =
         text.is_initial ? base.experiment.initial.contains(axis.name) : base.experiment.parameters.contains(axis.name);
     if (is_set || std::ranges::find(sweep.axes, axis.column(), &SweepAxis::column) != sweep.axes.end()) {

@@ -46,7 +46,7 @@ ExitCode take_sweep_run(Prepared& prepared, std::uint64_t run) {
   if (!prepared.loaded) return wrong_model;
   prepared.loaded.model->native = native;
   prepared.decides_size = true;
-  prepared.program = model::compile(*prepared.loaded.model);
+  prepared.program = model::compile(*std::exchange(prepared.loaded.model, std::nullopt));
   return done;
 }
 

@@ -58,7 +58,7 @@ Opened open(const ReplayRequest& request) {
     opened.exit = wrong_model;
     return opened;
   }
-  opened.program = model::compile(*opened.loaded.model);
+  opened.program = model::compile(*std::exchange(opened.loaded.model, std::nullopt));
   opened.exit = done;
   return opened;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <apps/continuo/options/command_line.hpp>
@@ -57,9 +58,10 @@ std::string failed_line(const model::CheckResult& check) {
 }
 
 Verdict verify(const std::string& path) {
-  const model::Loaded loaded = load_model(path);
+  model::Loaded loaded = load_model(path);
   if (!loaded) return {.exit = wrong_model, .remark = "not a model", .failed = {}};
-  const model::Simulated simulated = runs::run(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
+  const model::Simulated simulated =
+      runs::run(model::compile(*std::move(loaded.model)), {.interrupt = &interrupt_flag()});
   if (!simulated.run) {
     show(simulated.diagnostics, loaded.source);
     return {.exit = numerical_failure, .remark = "cannot be run", .failed = {}};
