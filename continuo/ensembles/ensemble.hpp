@@ -53,8 +53,8 @@ template <class M, State X, State P, class F, class... E>
 
 }  // namespace detail
 
-/// Integrates dx/dt = f(t, x, p) over the interval for every start, W runs at once on each thread. f is called with
-/// lanes of numbers and with plain ones: it is a template over both (`auto`), has no `if` on its numbers (see
+/// Integrates dx/dt = f(t, x, p) over the interval for every start, W runs or more at once on each thread. f is called
+/// with lanes of numbers and with plain ones: it is a template over both (`auto`), has no `if` on its numbers (see
 /// `select`), and is written as f(t, x, dxdt, p), or to return dx/dt as f(t, x, p); without p for starts that have no
 /// parameters. Each thread has a copy of f. The method is an explicit Runge-Kutta method. Events are those of `falls`,
 /// `rises`, `crosses`, `at` and `every`: a guard may take (t, x, p), an action (now, p), and changes p for its run

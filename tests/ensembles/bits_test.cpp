@@ -165,6 +165,39 @@ TEST(EnsembleAndSolve, HaveTheSameBitsWithFixedStepsAndForVectors) {
   }
 }
 
+template <class M>
+void expect_the_bits_of_fixed_steps(const List& list) {
+  // x0 escapes to infinity in the runs with a large p0, and x1 follows it there.
+  const auto escaping = [](const auto& t, const auto& x, auto& dxdt, const auto& p) {
+    dxdt[0] = (p[0] - 1.25) * x[0] * x[0] - 0.1 * p[1] * t;
+    dxdt[1] = x[0] - p[2] * x[1];
+  };
+  const double step = 0.0078125;
+  const auto one = ensemble<1>(escaping, list, {0, 3}, M{}, {.step = step, .threads = 1});
+  const auto eight = ensemble(escaping, list, {0, 3}, M{}, {.step = step, .threads = 1});
+  const auto wide = ensemble<32>(escaping, list, {0, 3}, M{}, {.step = step, .threads = 2});
+  ASSERT_GT(one.failures(), 3U);
+  ASSERT_LT(one.failures(), list.size() / 2);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    expect_same(one.runs[i], eight.runs[i]);
+    expect_same(one.runs[i], wide.runs[i]);
+    const P& p = list[i].p;
+    const auto f = [&](double t, const X& x, X& dxdt) { escaping(t, x, dxdt, p); };
+    const auto alone = solve(f, list[i].x, {0, 3}, M{}, {.step = step});
+    EXPECT_EQ(alone.outcome.ending, one.runs[i].outcome.ending);
+    EXPECT_EQ(alone.outcome.t, one.runs[i].outcome.t);
+    EXPECT_EQ(alone.final_state(), one.runs[i].x);
+    EXPECT_EQ(alone.statistics.steps, one.runs[i].steps);
+  }
+}
+
+TEST(EnsembleAndSolve, HaveTheSameBitsOverManyFixedStepsWhereSomeRunsEscape) {
+  const List list = random_starts(61, 11);
+  expect_the_bits_of_fixed_steps<Rk4>(list);
+  expect_the_bits_of_fixed_steps<Tsitouras5>(list);
+  expect_the_bits_of_fixed_steps<Dop853>(list);
+}
+
 /// A system that says that it depends on time: its steps are at most a fiftieth of the run.
 struct Pulse {
   bool autonomous = false;

@@ -79,11 +79,9 @@ class LaneDriver {
     }
   }
 
-  /// One step of every run, or several of a fixed size.
+  /// One step of every run.
   void take_step() {
-    if constexpr (is_small && !Run::has_events) {
-      if (sizes_.fixed() && !has_rows_) take_free_steps();
-    }
+    if (one_by_one_ > 0) --one_by_one_;
     sizes_.choose();
     refresh();
     step();
@@ -109,6 +107,60 @@ class LaneDriver {
 
   static constexpr bool has_own_runs = HasOwnRuns<F, M>;
 
+  static constexpr bool is_small = [] {
+    if constexpr (FixedSize<X>) {
+      return std::tuple_size_v<X> <= 12;
+    } else {
+      return false;
+    }
+  }();
+
+ public:
+  /// Whether steps of a fixed size may need no look at each.
+  static constexpr bool can_step_freely = is_small && !Run::has_events;
+  /// The runs of a driver while they take steps of a fixed size at which nothing is looked at.
+  struct FreeMotion {
+    SystemWithParameters<F, WideP> system;
+    WideX x;
+    Kept<WideX> slope;        // f at the start of the next step, where the method computes it
+    Wide size, begin, first;  // of the steps, where their grid begins, and how many of it there were
+  };
+  /// How many such steps no run ends with; 0 where each step is looked at.
+  [[nodiscard]] std::size_t free_steps() const {
+    const bool looks = !sizes_.fixed() || has_rows_ || (is_active() && one_by_one_ > 0);
+    return looks ? 0 : sizes_.free_steps(most_free_steps);
+  }
+  [[nodiscard]] FreeMotion free_motion() {
+    if constexpr (keeps_slope) refresh();
+    return {system_, x_, work_.k[0], sizes_.fixed_size(), sizes_.grid(), sizes_.fixed_steps()};
+  }
+  /// Takes the steps of all motions in turn: while a stage of one waits for the stage before, the processor computes
+  /// those of the others. The state of a motion goes through memory, and its stages stay in registers. The motions are
+  /// written out: of a loop over them the compiler would make one over several steps of each, which wait for each
+  /// other.
+  template <std::size_t count, std::size_t... motion>
+  [[gnu::flatten, gnu::noinline]] static void take_free_steps(std::array<FreeMotion, count>& motions, std::size_t steps,
+                                                              std::index_sequence<motion...>) {
+    Wide step(0.0);
+    for (std::size_t i = 0; i < steps; ++i, step += Wide(1.0)) (take_free_step(motions[motion], step), ...);
+  }
+  /// The motion has taken these steps. A component that is not finite stays so, as a step adds to it: one look at the
+  /// end is enough. Where there is such a one, the steps are taken again one by one.
+  void pass_free_steps(const FreeMotion& motion, std::size_t steps) {
+    fresh_ = Wide(0.0);
+    if (any(sizes_.active() & (zero_if_all_finite(motion.x) != Wide(0.0)))) [[unlikely]] {
+      one_by_one_ = steps;
+      return;
+    }
+    x_ = motion.x;
+    if constexpr (keeps_slope) {
+      work_.k[0] = motion.slope;
+      fresh_ = Wide(1.0);
+    }
+    sizes_.pass_free_steps(steps);
+  }
+
+ private:
   // What happens to a lane at the end of its step.
   enum class Next : char { step, ended, begins_anew };
 
@@ -263,38 +315,17 @@ class LaneDriver {
     static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
   }
 
-  // Steps of a fixed size with which no lane ends need no look at each, only whether they have stayed finite. Where
-  // they have not, they are taken again one by one.
-  void take_free_steps() {
-    const std::size_t count = sizes_.free_steps(most_free_steps);
-    if (count == 0) return;
-    refresh();
-    const WideX start = x_;
-    const Wide nothing = flat_free_steps(count);
-    fresh_ = Wide(M::tableau.first_same_as_last() ? 1.0 : 0.0);
-    if (any(sizes_.active() & (nothing != Wide(0.0)))) [[unlikely]] {
-      x_ = start;
-      fresh_ = Wide(0.0);
-      return;
-    }
-    sizes_.pass_free_steps(count);
-  }
-  // On copies, which nothing else can see, so that the compiler may keep them in registers.
-  [[gnu::flatten]] Wide flat_free_steps(std::size_t count) {
-    auto system = system_;
-    auto work = work_;
-    WideX x = x_, x_new = x_;
-    const Wide size = sizes_.fixed_size(), first = sizes_.fixed_steps(), begin = sizes_.grid();
-    Wide nothing(0.0), step(0.0);
-    for (std::size_t i = 0; i < count; ++i, step += Wide(1.0)) {
-      static_cast<void>(M::step(system, begin + (first + step) * size, x, size, false, work, x_new));
-      M::accept(work);
-      nothing += zero_if_all_finite(x_new);
-      x = x_new;
-    }
-    x_ = x;
-    work_ = work;
-    return nothing;
+  // On a workspace that nothing else can see, so that the compiler may keep it in registers.
+  static void take_free_step(FreeMotion& motion, const Wide& number) {
+    typename M::template Workspace<WideX> work;
+    WideX x_new;
+    if constexpr (keeps_slope) work.k[0] = motion.slope;
+    work.start_fresh = keeps_slope;
+    const Wide t = motion.begin + (motion.first + number) * motion.size;
+    static_cast<void>(M::step(motion.system, t, motion.x, motion.size, false, work, x_new));
+    M::accept(work);
+    if constexpr (keeps_slope) motion.slope = work.k[0];
+    motion.x = x_new;
   }
 
   // f at the beginning of the step, for the lanes that have not kept it from the step before.
@@ -467,13 +498,7 @@ class LaneDriver {
     return near;
   }
 
-  static constexpr bool is_small = [] {
-    if constexpr (FixedSize<X>) {
-      return std::tuple_size_v<X> <= 12;
-    } else {
-      return false;
-    }
-  }();
+  static constexpr bool keeps_slope = M::tableau.first_same_as_last();
   static constexpr std::size_t steps_between_looks = 64, most_free_steps = 256;
   static constexpr std::array<bool, Source::count> is_guard_{has_guard<E>...};
 
@@ -495,6 +520,7 @@ class LaneDriver {
   bool has_rows_;                        // or somebody who may want to see pieces of the motion
   bool exhausted_ = false;               // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
+  std::size_t one_by_one_ = 0;          // so many of the next steps are not free: a run escapes in one of them
   std::optional<std::size_t> pending_;  // a run that waits for room
 };
 

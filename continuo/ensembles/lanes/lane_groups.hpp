@@ -1,7 +1,10 @@
-// The W runs that a thread advances at once, in groups of as many as a register has numbers. The groups take their
-// steps in turn: while the size of a step waits for the error of the one before, the processor computes the next
-// group's. One group of several registers would fill them, and send what does not fit through memory.
+// The runs that a thread advances at once, W or more, in groups of as many as a register has numbers. The groups take
+// their steps in turn: while the size of a step waits for the error of the one before, or a stage for the one before,
+// the processor computes the next group's. One group of several registers would fill them, and send what does not fit
+// through memory.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -15,14 +18,12 @@ namespace continuo::detail {
 template <class F, class Starts, class M, std::size_t W, class... E>
 class LaneGroups {
   static constexpr std::size_t in_register = xsimd::batch<double>::size;
-  // Steps of a fixed size wait for nothing, and a step of few stages finds room in the registers.
   // A system may be one of so many lanes, and no others.
   static constexpr bool is_of_any_width = !requires { F::lanes; };
-  static constexpr std::size_t count =
-      M::error_order > 0 && is_of_any_width&& W % in_register == 0 ? W / in_register : 1;
+  static constexpr std::size_t width = is_of_any_width && W % in_register == 0 ? in_register : W;
 
  public:
-  using Driver = LaneDriver<F, Starts, M, W / count, E...>;
+  using Driver = LaneDriver<F, Starts, M, width, E...>;
   using Settings = typename Driver::Settings;
   using Queue = typename Driver::Queue;
 
@@ -41,6 +42,7 @@ class LaneGroups {
         if (queue_.stopped()) return;
       }
       while (any_is_active() && !idle_can_begin()) {
+        if constexpr (Driver::can_step_freely) take_free_steps();
         for (One& group : groups_)
           if (group.driver.is_active()) group.driver.take_step();
       }
@@ -51,6 +53,10 @@ class LaneGroups {
   struct One {
     Driver driver;
   };
+  // A step of few stages is short beside the time that its stages wait for each other.
+  static constexpr std::size_t least = M::error_order == 0 && Driver::can_step_freely ? 4 : 1;
+  static constexpr std::size_t count = std::max(W / width, least);
+
   Queue& queue_;
   One groups_[count];
 
@@ -58,6 +64,18 @@ class LaneGroups {
   LaneGroups(const F& f, const Starts& starts, const Settings& settings, Queue& queue, std::index_sequence<i...>)
       : queue_(queue), groups_{{((void)i, Driver(f, starts, settings, queue))}...} {}
 
+  void take_free_steps()
+    requires Driver::can_step_freely
+  {
+    std::size_t steps = groups_[0].driver.free_steps();
+    for (const One& group : groups_) steps = std::min(steps, group.driver.free_steps());
+    if (steps == 0) return;
+    [&]<std::size_t... i>(std::index_sequence<i...> all) {
+      std::array<typename Driver::FreeMotion, count> motions{groups_[i].driver.free_motion()...};
+      Driver::take_free_steps(motions, steps, all);
+      (groups_[i].driver.pass_free_steps(motions[i], steps), ...);
+    }(std::make_index_sequence<count>());
+  }
   [[nodiscard]] bool any_is_active() const {
     for (const One& group : groups_)
       if (group.driver.is_active()) return true;
