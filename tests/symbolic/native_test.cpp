@@ -69,6 +69,16 @@ TEST(Native, FamiliesInLoopsGiveTheBitsOfTheTape) {
   EXPECT_GT(loops, 12u);
 }
 
+// gcc 12 fuses them, two at once, where the processor can (vfmaddsub).
+TEST(Native, ProductsBesideSumsAndDifferencesGiveTheBitsOfTheTape) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(17);
+  Graph g;
+  const auto product = [&g](std::uint32_t i) { return g.multiply(g.variable(1 + i), g.variable(3 + i)); };
+  expect_the_same_bits(g, {g.subtract(product(0), g.variable(5)), g.add(product(1), g.variable(6))}, random, *native);
+}
+
 /// A sum of many products of one state: 60 operations, an output.
 std::shared_ptr<const Tape> some_tape(double salt) {
   Graph g;

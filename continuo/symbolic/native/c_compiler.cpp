@@ -31,8 +31,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // Products and sums are not contracted, errno is not set, and powers are those of the library: the same bits as a tape.
-// Where gcc 12 joins statements that are alike to vectors, it contracts a product with a sum and a difference beside it
-// (vfmsubadd) all the same.
+// Statements that are alike are not joined to vectors: gcc 12 would fuse those of code in lanes (see
+// native_compiler.cpp).
 constexpr std::array flags = {
     "-x",
     "c",

@@ -29,6 +29,14 @@ constexpr std::string_view heading =
     "#define INFINITY __builtin_inf()\n"
     "#define NAN __builtin_nan(\"\")\n";
 
+/// gcc 12 makes vfmaddsub of products beside sums and differences, in loops too, whatever -ffp-contract says
+/// (tree-vect-slp-patterns.cc asks for the instruction only): code for one run gets no such instructions, which AVX-512
+/// has of its own. Code in lanes has its vectors in its text, and nothing for gcc to join.
+constexpr std::string_view without_fused =
+    "#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)\n"
+    "#pragma GCC target(\"no-fma,no-avx512f\")\n"
+    "#endif\n";
+
 /// A folder for one compilation, which nobody else can read.
 class TemporaryFolder {
  public:
@@ -103,7 +111,7 @@ std::shared_ptr<NativeFunction> NativeCompiler::function(const std::string& key,
     if (place) return place;
     made = place = std::make_shared<NativeFunction>();
   }
-  provide(made, std::move(text));
+  provide(made, [text = std::move(text)] { return std::string(without_fused) + text(); });
   return made;
 }
 
@@ -119,7 +127,9 @@ std::shared_ptr<NativeFunction> NativeCompiler::step_code(const std::shared_ptr<
                                                           CStepFormula formula) {
   const auto step = std::make_shared<NativeFunction>();
   if (options_.use == NativeUse::never || !is_worth_a_step(*tape, formula)) return step;
-  provide(step, [tape, formula = std::move(formula)] { return whole_text(c_step(*tape, formula), *tape); });
+  provide(step, [tape, formula = std::move(formula)] {
+    return std::string(without_fused) + whole_text(c_step(*tape, formula), *tape);
+  });
   return step;
 }
 
@@ -165,7 +175,7 @@ void NativeCompiler::make_now(const Job& job, std::stop_token stop) {
 }
 
 NativeCompiler::Job NativeCompiler::job_of(const std::shared_ptr<const Tape>& tape) {
-  return {.text = [tape] { return whole_text(function_of(*tape), *tape); },
+  return {.text = [tape] { return std::string(without_fused) + whole_text(function_of(*tape), *tape); },
           .use =
               [tape](void* function, std::shared_ptr<const void> code) {
                 tape->use_native(reinterpret_cast<NativeEvaluation>(function), std::move(code));
