@@ -2,6 +2,7 @@
 #include "native.hpp"
 
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -59,10 +60,14 @@ template <class Function>
   refuse(what, signature);
 }
 
-[[nodiscard]] std::uintptr_t address_of_ctypes(py::handle pointer) {
-  const py::module_ ctypes = py::module_::import("ctypes");
-  const py::object address = ctypes.attr("cast")(pointer, ctypes.attr("c_void_p")).attr("value");
-  return address.is_none() ? 0 : address.cast<std::uintptr_t>();
+/// The memory of a function of ctypes is the pointer to it; ctypes.cast takes a quarter of the time of a short run.
+[[nodiscard]] std::uintptr_t address_of_ctypes(py::handle function) {
+  Py_buffer memory;
+  if (PyObject_GetBuffer(function.ptr(), &memory, PyBUF_SIMPLE) != 0) throw py::error_already_set();
+  std::uintptr_t address = 0;
+  if (memory.len == sizeof address) std::memcpy(&address, memory.buf, sizeof address);
+  PyBuffer_Release(&memory);
+  return address;
 }
 
 [[nodiscard]] Native of_ctypes(py::handle f, void* user) {
