@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tests/studies/sweep_comparison.hpp>
 #include <tests/symbolic/native_referee.hpp>
 
 #include <continuo/language/load.hpp>
@@ -18,25 +19,6 @@
 
 namespace continuo::studies::sweep_together_events_test {
 namespace {
-
-PreparedSweep prepared(const std::string& text, std::shared_ptr<model::NativeCompiler> native = {}) {
-  model::Loaded loaded = model::load(model::Source("model.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text() << text;
-  loaded.model->native = std::move(native);
-  auto made = PreparedSweep::create(*std::move(loaded.model), {});
-  EXPECT_TRUE(made) << describe(made.status());
-  return *std::move(made);
-}
-
-void expect_same(const SweepOutcome& actual, const SweepOutcome& expected) {
-  EXPECT_EQ(actual.ending, expected.ending);
-  EXPECT_EQ(model::bits(actual.t), model::bits(expected.t));
-  EXPECT_EQ(actual.message, expected.message);
-  ASSERT_EQ(actual.kept.size(), expected.kept.size());
-  for (std::size_t k = 0; k < expected.kept.size(); ++k)
-    EXPECT_EQ(model::bits(actual.kept[k]), model::bits(expected.kept[k]))
-        << "kept " << k << ": " << actual.kept[k] << " for " << expected.kept[k];
-}
 
 /// All runs of `sweep` against those of `alone`, one by one. The events that have happened, in all.
 double expect_the_runs_one_by_one(const PreparedSweep& sweep, const PreparedSweep& alone, std::size_t count_is_kept) {
@@ -47,7 +29,7 @@ double expect_the_runs_one_by_one(const PreparedSweep& sweep, const PreparedSwee
   sweep.run_each(runs, [&](const SweepOutcome& outcome) {
     SCOPED_TRACE(fmt::format("run {}", next));
     const SweepOutcome expected = alone.run(runs[next++]);
-    expect_same(outcome, expected);
+    expect_same_outcome(outcome, expected);
     if (expected.kept[count_is_kept] > 0) events += expected.kept[count_is_kept];
     return true;
   });
@@ -184,7 +166,7 @@ TEST(SweepTogetherWithEvents, RandomModelsHaveTheBitsOfTheirRunsOneByOne) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const std::string text = Writer(seed).model(ways[seed % ways.size()]);
     SCOPED_TRACE(text);
-    const PreparedSweep sweep = prepared(text);
+    const PreparedSweep sweep = prepared_sweep(text);
     EXPECT_TRUE(sweep.goes_together());
     events += expect_the_runs_one_by_one(sweep, sweep, 0);
     if (HasFailure()) return;
@@ -202,7 +184,7 @@ TEST(SweepTogetherWithEvents, MachineCodeHasTheBitsOfTheRunsOneByOne) {
     const std::string text =
         Writer(seed).model(seed % 2 == 0 ? "method dop853 tol 1e-8" : "method tsitouras5 tol 1e-6");
     SCOPED_TRACE(text);
-    expect_the_runs_one_by_one(prepared(text, native), prepared(text), 0);
+    expect_the_runs_one_by_one(prepared_sweep(text, {}, native), prepared_sweep(text), 0);
   }
   EXPECT_EQ(native->report().trouble, "");
   EXPECT_GE(native->report().compiled, 3U);
@@ -212,12 +194,12 @@ TEST(SweepTogetherWithEvents, MachineCodeHasTheBitsOfTheRunsOneByOne) {
 TEST(SweepTogetherWithEvents, RunsThatBecomeStiffEndAsTheyDoAlone) {
   for (const char* tolerance : {"tol 1e-4", "tol 1e-8"}) {
     const PreparedSweep sweep =
-        prepared(fmt::format("param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nn' = 0\nx(0) = 2\ny(0) = 0\nn(0) = 0\n"
-                             "when x falls through 1 {{ x := 0.9 }}\nwhen y crosses 0.5 {{ n := n + 1 }}\n"
-                             "when x < -1.5 and n > 4 {{ if n > 9 {{ y := -y }} }}\n"
-                             "run 0..20 {}\nsweep {{ k in (0.1, 1, 5, 20, 100, 3, 0.3, 2, 7)\n"
-                             "  keep count of events, x at end, y at 7, time of event 3 }}\n",
-                             tolerance));
+        prepared_sweep(fmt::format("param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nn' = 0\nx(0) = 2\ny(0) = 0\nn(0) = 0\n"
+                                   "when x falls through 1 {{ x := 0.9 }}\nwhen y crosses 0.5 {{ n := n + 1 }}\n"
+                                   "when x < -1.5 and n > 4 {{ if n > 9 {{ y := -y }} }}\n"
+                                   "run 0..20 {}\nsweep {{ k in (0.1, 1, 5, 20, 100, 3, 0.3, 2, 7)\n"
+                                   "  keep count of events, x at end, y at 7, time of event 3 }}\n",
+                                   tolerance));
     EXPECT_TRUE(sweep.goes_together());
     EXPECT_GT(expect_the_runs_one_by_one(sweep, sweep, 0), 50);
   }
@@ -226,12 +208,12 @@ TEST(SweepTogetherWithEvents, RunsThatBecomeStiffEndAsTheyDoAlone) {
 /// A relief valve (C. Hos, A. Champneys, Physica D 241 (2012)) whose body strikes its seat, balls that come to rest,
 /// and runs without an end of their own beside such as stop soon.
 TEST(SweepTogetherWithEvents, ImpactsHaveTheBitsOfTheRunsOneByOne) {
-  const PreparedSweep valves = prepared(
+  const PreparedSweep valves = prepared_sweep(
       "param q = 1\nx' = v\nv' = -1.25*v - (x + 10) + p\np' = 20*(q - x*sqrt(p))\nx(0) = 0.2\nv(0) = 0\n"
       "p(0) = 10.2\nwhen x falls through 0 { x := 0; v := -0.8*v }\nrun 0..5 method dop853 tol 1e-8\n"
       "sweep { q from 1 to 10 count 40\n  keep count of events, x at end, max(x) }\n");
   EXPECT_GT(expect_the_runs_one_by_one(valves, valves, 0), 40);
-  const PreparedSweep balls = prepared(
+  const PreparedSweep balls = prepared_sweep(
       "param g = 9.8\nparam e = 0.9\nmode flight { h'' = -g }\nmode rest { h'' = 0 }\nh(0) = 1\nh'(0) = 0\n"
       "when h falls through 0 in flight { h := 0\n if -e*h' > 0.05 { h' := -e*h' } else { h' := 0; go rest } }\n"
       "run 0..9 method tsitouras5 tol 1e-9\nsweep { e from 0.1 to 0.95 count 9; g in (1.6, 9.8)\n"
@@ -241,8 +223,9 @@ TEST(SweepTogetherWithEvents, ImpactsHaveTheBitsOfTheRunsOneByOne) {
 
 /// Jumps of the equations and inputs that step are for the single run.
 TEST(SweepTogetherWithEvents, ModelsWithJumpsAreMadeOneByOne) {
-  EXPECT_FALSE(prepared("param a = 1\nx' = -sign(x - a*t)\nx(0) = 1\nrun 0..1 method dop853\nsweep { a in (1, 2) }\n")
-                   .goes_together());
+  EXPECT_FALSE(
+      prepared_sweep("param a = 1\nx' = -sign(x - a*t)\nx(0) = 1\nrun 0..1 method dop853\nsweep { a in (1, 2) }\n")
+          .goes_together());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tests/studies/sweep_comparison.hpp>
 #include <tests/symbolic/native_referee.hpp>
 
 #include <continuo/language/load.hpp>
@@ -20,25 +21,6 @@
 
 namespace continuo::studies::sweep_together_test {
 namespace {
-
-PreparedSweep prepared(const std::string& text, model::Experiment experiment = {},
-                       std::shared_ptr<model::NativeCompiler> native = {}) {
-  model::Loaded loaded = model::load(model::Source("model.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text() << text;
-  loaded.model->native = std::move(native);
-  auto made = PreparedSweep::create(*std::move(loaded.model), std::move(experiment));
-  EXPECT_TRUE(made) << describe(made.status());
-  return *std::move(made);
-}
-
-void expect_same(const SweepOutcome& actual, const SweepOutcome& expected) {
-  EXPECT_EQ(actual.ending, expected.ending);
-  EXPECT_EQ(model::bits(actual.t), model::bits(expected.t));
-  EXPECT_EQ(actual.message, expected.message);
-  ASSERT_EQ(actual.kept.size(), expected.kept.size());
-  for (std::size_t k = 0; k < expected.kept.size(); ++k)
-    EXPECT_EQ(model::bits(actual.kept[k]), model::bits(expected.kept[k])) << "kept " << k << ": " << actual.kept[k];
-}
 
 std::vector<SweepOutcome> together(const PreparedSweep& sweep, const std::vector<std::uint64_t>& runs) {
   std::vector<SweepOutcome> outcomes;
@@ -60,7 +42,7 @@ void expect_the_runs_one_by_one(const PreparedSweep& sweep, const std::vector<st
   ASSERT_EQ(outcomes.size(), runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     SCOPED_TRACE(fmt::format("run {}", runs[i]));
-    expect_same(outcomes[i], sweep.run(runs[i]));
+    expect_same_outcome(outcomes[i], sweep.run(runs[i]));
   }
 }
 
@@ -112,7 +94,7 @@ TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
     std::mt19937 random(seed);
     const std::string text = random_model(random, ways[seed % ways.size()]);
     SCOPED_TRACE(text);
-    const PreparedSweep sweep = prepared(text);
+    const PreparedSweep sweep = prepared_sweep(text);
     EXPECT_TRUE(sweep.goes_together());
     expect_the_runs_one_by_one(sweep, all_runs(sweep));
   }
@@ -121,7 +103,7 @@ TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
 TEST(SweepTogether, RunsWithoutANamedMethodHaveTheBitsOfTheRunsOneByOne) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     std::mt19937 random(seed);
-    const PreparedSweep sweep = prepared(random_model(random, seed % 2 == 0 ? "tol 1e-6" : "tol 1e-9"));
+    const PreparedSweep sweep = prepared_sweep(random_model(random, seed % 2 == 0 ? "tol 1e-6" : "tol 1e-9"));
     expect_the_runs_one_by_one(sweep, all_runs(sweep));
   }
 }
@@ -130,16 +112,18 @@ TEST(SweepTogether, RunsWithoutANamedMethodHaveTheBitsOfTheRunsOneByOne) {
 /// turns hundreds of times, of which the pair asks more.
 TEST(SweepTogether, RunsThatBecomeStiffEndAsTheyDoAlone) {
   for (const char* tolerance : {"tol 1e-4", "tol 1e-8"}) {
-    expect_the_runs_one_by_one(prepared(fmt::format("param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nx(0) = 2\ny(0) = 0\n"
-                                                    "run 0..20 {}\nsweep {{ k in (0.1, 1, 5, 20, 100, 1000, 3, 300)\n"
-                                                    "  keep x at end, mean(x), x at 7 }}\n",
-                                                    tolerance)),
-                               {0, 1, 2, 3, 4, 5, 6, 7});
     expect_the_runs_one_by_one(
-        prepared(fmt::format("param w = 1\nparam k = 1\nx' = w*y\ny' = -w*x\nz' = k*(cos(t) - z)\nx(0) = 1\ny(0) = 0\n"
-                             "z(0) = 0\nrun 0..30 {}\nsweep {{ w in (0.5, 3, 40); k in (1, 30, 1000, 1e6)\n"
-                             "  keep x at end, z at end, max(x) }}\n",
-                             tolerance)),
+        prepared_sweep(fmt::format("param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nx(0) = 2\ny(0) = 0\n"
+                                   "run 0..20 {}\nsweep {{ k in (0.1, 1, 5, 20, 100, 1000, 3, 300)\n"
+                                   "  keep x at end, mean(x), x at 7 }}\n",
+                                   tolerance)),
+        {0, 1, 2, 3, 4, 5, 6, 7});
+    expect_the_runs_one_by_one(
+        prepared_sweep(
+            fmt::format("param w = 1\nparam k = 1\nx' = w*y\ny' = -w*x\nz' = k*(cos(t) - z)\nx(0) = 1\ny(0) = 0\n"
+                        "z(0) = 0\nrun 0..30 {}\nsweep {{ w in (0.5, 3, 40); k in (1, 30, 1000, 1e6)\n"
+                        "  keep x at end, z at end, max(x) }}\n",
+                        tolerance)),
         {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
   }
 }
@@ -148,10 +132,10 @@ TEST(SweepTogether, RunsThatBecomeStiffEndAsTheyDoAlone) {
 void expect_the_same_by_machine_code(const std::string& text, const model::Experiment& experiment,
                                      const std::shared_ptr<model::NativeCompiler>& native) {
   SCOPED_TRACE(text);
-  const PreparedSweep sweep = prepared(text, experiment), compiled = prepared(text, experiment, native);
+  const PreparedSweep sweep = prepared_sweep(text, experiment), compiled = prepared_sweep(text, experiment, native);
   const std::vector<SweepOutcome> outcomes = together(compiled, all_runs(compiled));
   ASSERT_EQ(outcomes.size(), sweep.runs());
-  for (std::uint64_t run = 0; run < sweep.runs(); ++run) expect_same(outcomes[run], sweep.run(run));
+  for (std::uint64_t run = 0; run < sweep.runs(); ++run) expect_same_outcome(outcomes[run], sweep.run(run));
 }
 
 TEST(SweepTogether, StepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
@@ -182,7 +166,7 @@ TEST(SweepTogether, StepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
 
 /// x' = a*x^2 from 1 ends at 1/a, the root of a negative number is none, and steps can be too many.
 TEST(SweepTogether, RunsThatFailDisturbNoOther) {
-  const PreparedSweep sweep = prepared(
+  const PreparedSweep sweep = prepared_sweep(
       "param a = 0\nparam b = 1\nx' = a*x^2 + 0*sqrt(b - t)\nx(0) = 1\nrun 0..1 method dop853 max steps 400\n"
       "sweep { a in (0, 0.5, 0.9, 1, 1.1, 3); b in (2, 0.5, 1, -1, 7)\n  keep x at end, max(x), x at 0.25 }\n");
   const std::vector<SweepOutcome> outcomes = together(sweep, all_runs(sweep));
@@ -195,7 +179,7 @@ TEST(SweepTogether, RunsThatFailDisturbNoOther) {
 
 /// A run that stiffness slows is foreseen to be endless after thousands of steps, and not by its lane.
 TEST(SweepTogether, RunsWithTooManyStepsEndAsTheyDoAlone) {
-  const PreparedSweep sweep = prepared(
+  const PreparedSweep sweep = prepared_sweep(
       "param k = 1\nx' = k*(cos(t) - x)\nx(0) = 2\nrun 0..50 method tsitouras5 tol 1e-4 max steps 3000\n"
       "sweep { k in (1, 10, 100, 300, 1000, 1e4, 1e5, 1e7, 1e9, 3)\n  keep x at end, mean(x) }\n");
   const std::vector<SweepOutcome> outcomes = together(sweep, all_runs(sweep));
@@ -206,7 +190,7 @@ TEST(SweepTogether, RunsWithTooManyStepsEndAsTheyDoAlone) {
 
 TEST(SweepTogether, NeitherOrderNorNeighboursNorTheirNumberMatter) {
   std::mt19937 random(7);
-  const PreparedSweep sweep = prepared(random_model(random, "method dop853 tol 1e-7"));
+  const PreparedSweep sweep = prepared_sweep(random_model(random, "method dop853 tol 1e-7"));
   for (const std::size_t count : {1U, 2U, 3U, 7U, 8U, 9U, 26U}) {
     std::vector<std::uint64_t> runs = all_runs(sweep);
     std::ranges::shuffle(runs, random);
@@ -219,7 +203,7 @@ TEST(SweepTogether, WhatIsVariedMayChangeTheEndAndTheSteps) {
   for (const char* how :
        {"run 0..T method dop853", "run 0..2 step T/100 method rk4", "run 0..T + 1 max step T/10 method tsitouras5"}) {
     SCOPED_TRACE(how);
-    const PreparedSweep sweep = prepared(fmt::format(
+    const PreparedSweep sweep = prepared_sweep(fmt::format(
         "param T = 1\nparam k = 1\ninput u = 0\nx'' = -k*x + u\nx(0) = k\nx'(0) = 0\n{}\n"
         "sweep {{ T in (1, 1, 2); k in (1, 4, 9); u in (0, 1)\n  keep x at end, x at T, max(x), time of end }}\n",
         how));
@@ -229,14 +213,14 @@ TEST(SweepTogether, WhatIsVariedMayChangeTheEndAndTheSteps) {
 
 TEST(SweepTogether, EndsWhereNoMoreRunsAreWanted) {
   std::mt19937 random(9);
-  const PreparedSweep sweep = prepared(random_model(random, "method tsitouras5"));
+  const PreparedSweep sweep = prepared_sweep(random_model(random, "method tsitouras5"));
   std::vector<SweepOutcome> outcomes;
   sweep.run_each(all_runs(sweep), [&](SweepOutcome outcome) {
     outcomes.push_back(std::move(outcome));
     return outcomes.size() < 5;
   });
   ASSERT_EQ(outcomes.size(), 5U);
-  for (std::uint64_t run = 0; run < 5; ++run) expect_same(outcomes[run], sweep.run(run));
+  for (std::uint64_t run = 0; run < 5; ++run) expect_same_outcome(outcomes[run], sweep.run(run));
 }
 
 /// Models whose runs are made one by one: events, jumps, a method that has no lanes or is chosen.
@@ -249,7 +233,7 @@ TEST(SweepTogether, OtherModelsAreRunOneByOne) {
         "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..3 method rodas5p\n" + end,
         "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..3\n" + end}) {
     SCOPED_TRACE(text);
-    const PreparedSweep sweep = prepared(text);
+    const PreparedSweep sweep = prepared_sweep(text);
     expect_the_runs_one_by_one(sweep, all_runs(sweep));
   }
 }
