@@ -1,7 +1,7 @@
 // The outcome of a run in words.
+#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include <continuo/solve/outcome.hpp>
 
@@ -10,8 +10,7 @@ namespace continuo {
 namespace {
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 }  // namespace
 

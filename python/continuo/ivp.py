@@ -87,8 +87,7 @@ def _run_with_pattern(
     rows, columns = grown.places
     while True:
         run = begin((rows, columns))
-        run.run()
-        error = run.take_error()
+        error = run.run()
         if not isinstance(error, PatternGrew):
             return run, error
         rows = np.concatenate([rows, error.places[0]])
@@ -192,8 +191,7 @@ def solve_ivp(
     times = None if t_eval is None else _times(t_eval, t0, t1)
     settings = (fun, t0, t1, y, chosen, options, times, dense_output, events, vectorized, args)
     run = begin_run(*settings)
-    run.run()
-    error = run.take_error()
+    error = run.run()
     if error is not None:
         if isinstance(error, PatternGrew):
             run, error = _run_with_pattern(error, lambda places: begin_run(*settings, places))

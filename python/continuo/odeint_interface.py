@@ -294,8 +294,7 @@ def _all_at_once(begin: Callable[..., _continuo.Run], times: Array, y: Array) ->
     repeats = not moves.all()
     distinct = times[np.concatenate(([True], moves))] if repeats else times
     run = begin(float(times[0]), float(times[-1]), y, distinct)
-    run.run()
-    error = run.take_error()
+    error = run.run()
     if error is not None:
         _raise(error)
     found = run.states().T

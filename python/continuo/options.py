@@ -36,6 +36,7 @@ class Method(NamedTuple):
 _COMMON = frozenset(
     "first_step max_step step max_steps rtol atol state mass second_order pairs names progress min_step".split()
 )
+_TOLERANCES = frozenset(("rtol", "atol"))
 _IMPLICIT = _COMMON | {"jac", "jac_sparsity", "lband", "uband"}
 _SCIPY = {
     "RK23": "bogacki_shampine3",
@@ -392,11 +393,13 @@ def begin_run(
     fun = with_equations(fun)
     n = len(y)
     extras: dict[str, Any] = {}
-    max_step = np.inf
-    rtol, atol = tolerances(options.get("rtol", 1e-3), options.get("atol", 1e-6), n, 4)
+    max_step = math.inf
+    rtol, atol = options.get("rtol", 1e-3), options.get("atol", 1e-6)
+    if not (type(rtol) is type(atol) is float and rtol >= LEAST_RTOL and atol >= 0):
+        rtol, atol = tolerances(rtol, atol, n, 4)
     if method.tightened != 1 and np.min(rtol) < _STRICT_RTOL:
         rtol, atol = rtol * method.tightened, atol * method.tightened
-    if options:
+    if not _TOLERANCES.issuperset(options):
         max_step = _steps(options, t0, t1, extras)
         _extras(method, options, t0, y, args, grown, extras)
     if events is not None:

@@ -304,6 +304,8 @@ def expression(equations: str | Sequence[str], native: str = "auto", **parameter
 
 def with_equations(fun: Any) -> Any:
     """`fun` of a solver, where it is equations as text; all else as it is."""
+    if callable(fun) or isinstance(fun, _continuo.Native):  # as most are: a call of a few steps takes little longer
+        return fun
     if isinstance(fun, (str, list, tuple)) and not hasattr(fun, "signature"):  # a LowLevelCallable is a tuple
         return expression(fun)
     return fun

@@ -163,11 +163,12 @@ void Run::require_idle() const {
         "thread meanwhile");
 }
 
-void Run::run() {
-  if (!run_) return;
+py::object Run::run() {
+  if (!run_) return take_error();
   const Busy busy(*this);
   holds_gil_ ? run_with_gil() : run_without_gil();
   if (!progress_.is_none() && progress_) report_progress(true);
+  return take_error();
 }
 
 template <class Advance>

@@ -37,8 +37,8 @@ class Run {
   Run& operator=(const Run&) = delete;
   ~Run() = default;
 
-  /// Runs to the end.
-  void run();
+  /// Runs to the end. Returns what `take_error` does.
+  [[nodiscard]] pybind11::object run();
   /// Takes one step. True while the run has not ended.
   bool step();
   /// Evaluates f once where the run begins, so that what is wrong with it shows.
