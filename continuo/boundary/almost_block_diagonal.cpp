@@ -43,18 +43,38 @@ AlmostBlockDiagonal<Number>::AlmostBlockDiagonal(std::size_t size, std::size_t p
       end_values_(2 * size + parameters),
       pair_(2 * size) {}
 
+/// Calls `visit` with the number of components where it is a common one, so that the compiler knows how long the loops
+/// are: those of a system of two or three equations are too short to be counted.
+template <class Number>
+template <class Visit>
+decltype(auto) AlmostBlockDiagonal<Number>::with_size(const Visit& visit) {
+  switch (n_) {
+    case 2:
+      return visit.template operator()<2>();
+    case 3:
+      return visit.template operator()<3>();
+    case 4:
+      return visit.template operator()<4>();
+    default:
+      return visit.template operator()<run_time_size>();
+  }
+}
+
 /// The equations of a stiff interval may be larger than those of its neighbours by many digits, which reflections
 /// would mix.
 template <class Number>
+template <std::size_t N>
 void AlmostBlockDiagonal<Number>::scale_rows(std::size_t interval) {
-  for (std::size_t i = 0; i < n_; ++i) {
-    const std::span<Number> of_left = left(interval).subspan(i * n_, n_),
-                            of_right = right(interval).subspan(i * n_, n_);
-    const double scale = 1 / std::max(greatest_or_one<Number>(of_left), greatest_or_one<Number>(of_right));
-    row_scales_[interval * n_ + i] = scale;
-    for (Number& entry : of_left) entry *= scale;
-    for (Number& entry : of_right) entry *= scale;
-    for (Number& entry : border(interval).subspan(i * k_, k_)) entry *= scale;
+  const std::size_t n = size<N>();
+  for (std::size_t i = interval * n; i < (interval + 1) * n; ++i) {
+    Number* const of_left = left_.data() + i * n;
+    Number* const of_right = right_.data() + i * n;
+    double greatest = 0;
+    for (std::size_t j = 0; j < n; ++j) greatest = std::max({greatest, magnitude(of_left[j]), magnitude(of_right[j])});
+    const double scale = greatest > 0 ? 1 / greatest : 1;
+    row_scales_[i] = scale;
+    for (std::size_t j = 0; j < n; ++j) of_left[j] *= scale, of_right[j] *= scale;
+    for (std::size_t j = 0; j < k_; ++j) border_[i * k_ + j] *= scale;
   }
 }
 
@@ -71,51 +91,66 @@ void AlmostBlockDiagonal<Number>::begin_elimination() {
 
 /// What is carried, above the equations of the interval that begins with the node.
 template <class Number>
+template <std::size_t N>
 void AlmostBlockDiagonal<Number>::stack(std::size_t interval) {
-  const std::size_t w = width(), w_carried = 2 * n_ + k_;
+  const std::size_t n = size<N>(), w = 3 * n + k_, w_carried = w - n;
   Number* const rows = stacks_.data() + (interval - 1) * stack_size();
-  for (std::size_t i = 0; i < n_; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     Number* const upper = rows + i * w;
     const Number* const carried = carried_.data() + i * w_carried;
-    std::copy_n(carried, n_, upper);
-    std::fill_n(upper + n_, n_, Number{});
-    std::copy_n(carried + n_, n_ + k_, upper + 2 * n_);
-    Number* const lower = rows + (n_ + i) * w;
-    std::copy_n(left(interval).data() + i * n_, n_, lower);
-    std::copy_n(right(interval).data() + i * n_, n_, lower + n_);
-    std::fill_n(lower + 2 * n_, n_, Number{});
-    std::copy_n(border(interval).data() + i * k_, k_, lower + 3 * n_);
+    std::copy_n(carried, n, upper);
+    std::fill_n(upper + n, n, Number{});
+    std::copy_n(carried + n, n + k_, upper + 2 * n);
+    Number* const lower = rows + (n + i) * w;
+    std::copy_n(left_.data() + (interval * n + i) * n, n, lower);
+    std::copy_n(right_.data() + (interval * n + i) * n, n, lower + n);
+    std::fill_n(lower + 2 * n, n, Number{});
+    std::copy_n(border_.data() + (interval * n + i) * k_, k_, lower + 3 * n);
   }
 }
 
 /// Householder's reflections make the columns of the node zero below its n rows; what is left below is carried on.
 template <class Number>
+template <std::size_t N>
 bool AlmostBlockDiagonal<Number>::reflect(std::size_t interval) {
-  const std::size_t w = width(), rows = 2 * n_, w_carried = 2 * n_ + k_;
+  const std::size_t n = size<N>(), rows = 2 * n, w = 3 * n + k_, w_carried = w - n;
   Number* const a = stacks_.data() + (interval - 1) * stack_size();
-  for (std::size_t c = 0; c < n_; ++c) {
+  Number* const sums = sums_.data();
+  for (std::size_t c = 0; c < n; ++c) {
     double square = 0;
     for (std::size_t r = c; r < rows; ++r) square += squared_size(a[r * w + c]);
     const double norm = std::sqrt(square), of_pivot = std::sqrt(squared_size(a[c * w + c]));
     if (!(norm > 0) || !std::isfinite(norm)) return false;
     const Number phase = of_pivot > 0 ? a[c * w + c] * (1 / of_pivot) : Number(1);
     a[c * w + c] += phase * norm;
-    diagonals_[(interval - 1) * n_ + c] = reciprocal(-(phase * norm));
+    diagonals_[(interval - 1) * n + c] = reciprocal(-(phase * norm));
     const double factor = 1 / (norm * (norm + of_pivot));
-    reflection_factors_[(interval - 1) * n_ + c] = factor;
-    std::fill(sums_.begin(), sums_.end(), Number{});
+    reflection_factors_[(interval - 1) * n + c] = factor;
+    for (std::size_t j = c + 1; j < w; ++j) sums[j] = Number{};
     for (std::size_t r = c; r < rows; ++r) {
       const Number v = conjugate(a[r * w + c]);
       const Number* const row = a + r * w;
-      for (std::size_t j = c + 1; j < w; ++j) sums_[j] += v * row[j];
+      for (std::size_t j = c + 1; j < w; ++j) sums[j] += v * row[j];
     }
     for (std::size_t r = c; r < rows; ++r) {
       const Number v = a[r * w + c] * factor;
       Number* const row = a + r * w;
-      for (std::size_t j = c + 1; j < w; ++j) row[j] -= v * sums_[j];
+      for (std::size_t j = c + 1; j < w; ++j) row[j] -= v * sums[j];
     }
   }
-  for (std::size_t i = 0; i < n_; ++i) std::copy_n(a + (n_ + i) * w + n_, w_carried, carried_.data() + i * w_carried);
+  for (std::size_t i = 0; i < n; ++i) std::copy_n(a + (n + i) * w + n, w_carried, carried_.data() + i * w_carried);
+  return true;
+}
+
+template <class Number>
+template <std::size_t N>
+bool AlmostBlockDiagonal<Number>::eliminate() {
+  for (std::size_t i = 0; i < intervals_; ++i) scale_rows<N>(i);
+  begin_elimination();
+  for (std::size_t i = 1; i < intervals_; ++i) {
+    stack<N>(i);
+    if (!reflect<N>(i)) return false;
+  }
   return true;
 }
 
@@ -153,51 +188,59 @@ bool AlmostBlockDiagonal<Number>::factor_end() {
 
 template <class Number>
 bool AlmostBlockDiagonal<Number>::factor() {
-  for (std::size_t i = 0; i < intervals_; ++i) scale_rows(i);
-  begin_elimination();
-  for (std::size_t i = 1; i < intervals_; ++i) {
-    stack(i);
-    if (!reflect(i)) return false;
+  return with_size([this]<std::size_t N>() { return this->template eliminate<N>(); }) && factor_end();
+}
+
+/// The right-hand sides carried are kept in the rows of the interval that they have been carried over.
+template <class Number>
+template <std::size_t N>
+void AlmostBlockDiagonal<Number>::carry_right_side(std::span<Number> b) const {
+  const std::size_t n = size<N>(), w = 3 * n + k_;
+  for (std::size_t node = 1; node < intervals_; ++node) {
+    const Number* const a = stacks_.data() + (node - 1) * stack_size();
+    Number* const rows = b.data() + (node - 1) * n;  // of this interval and the next: 2n numbers
+    for (std::size_t c = 0; c < n; ++c) {
+      Number sum{};
+      for (std::size_t r = c; r < 2 * n; ++r) sum += conjugate(a[r * w + c]) * rows[r];
+      sum *= reflection_factors_[(node - 1) * n + c];
+      for (std::size_t r = c; r < 2 * n; ++r) rows[r] -= a[r * w + c] * sum;
+    }
   }
-  return factor_end();
+}
+
+/// Backwards from the last node, whose numbers b holds, with those of the first and the parameters.
+template <class Number>
+template <std::size_t N>
+void AlmostBlockDiagonal<Number>::substitute(std::span<Number> b) const {
+  const std::size_t n = size<N>(), w = 3 * n + k_;
+  const Number* const at_first = end_values_.data() + n;
+  for (std::size_t node = intervals_; node-- > 1;) {
+    const Number* const a = stacks_.data() + (node - 1) * stack_size();
+    const Number* const right_side = b.data() + (node - 1) * n;
+    Number* const y = b.data() + node * n;
+    const Number* const next = y + n;
+    for (std::size_t i = n; i-- > 0;) {
+      const Number* const row = a + i * w;
+      Number sum = right_side[i];
+      for (std::size_t j = i + 1; j < n; ++j) sum -= row[j] * y[j];
+      for (std::size_t j = 0; j < n; ++j) sum -= row[n + j] * next[j];
+      for (std::size_t j = 0; j < n + k_; ++j) sum -= row[2 * n + j] * at_first[j];
+      y[i] = sum * diagonals_[(node - 1) * n + i];
+    }
+  }
 }
 
 template <class Number>
 void AlmostBlockDiagonal<Number>::solve(std::span<Number> b) {
-  const std::size_t w = width();
   for (std::size_t i = 0; i < row_scales_.size(); ++i) b[i] *= row_scales_[i];
-  // The right-hand sides carried are kept in the rows of the interval that they have been carried over.
-  for (std::size_t node = 1; node < intervals_; ++node) {
-    const Number* const a = stacks_.data() + (node - 1) * stack_size();
-    Number* const rows = b.data() + (node - 1) * n_;  // of this interval and the next: 2n numbers
-    for (std::size_t c = 0; c < n_; ++c) {
-      Number sum{};
-      for (std::size_t r = c; r < 2 * n_; ++r) sum += conjugate(a[r * w + c]) * rows[r];
-      sum *= reflection_factors_[(node - 1) * n_ + c];
-      for (std::size_t r = c; r < 2 * n_; ++r) rows[r] -= a[r * w + c] * sum;
-    }
-  }
+  with_size([this, b]<std::size_t N>() { this->template carry_right_side<N>(b); });
   const std::size_t end = (intervals_ - 1) * n_, size = 2 * n_ + k_;
   for (std::size_t i = 0; i < size; ++i) end_values_[i] = b[end + i] * end_rows_[i];
   end_.solve(end_values_.data());
   for (std::size_t i = 0; i < size; ++i) end_values_[i] *= end_columns_[i];
-  const Number* const at_first = end_values_.data() + n_;
   std::copy_n(end_values_.data(), n_, b.data() + intervals_ * n_);
-  for (std::size_t node = intervals_; node-- > 1;) {
-    const Number* const a = stacks_.data() + (node - 1) * stack_size();
-    Number* const right_side = b.data() + (node - 1) * n_;
-    Number* const y = b.data() + node * n_;
-    const Number* const next = y + n_;
-    for (std::size_t i = n_; i-- > 0;) {
-      const Number* const row = a + i * w;
-      Number sum = right_side[i];
-      for (std::size_t j = i + 1; j < n_; ++j) sum -= row[j] * y[j];
-      for (std::size_t j = 0; j < n_; ++j) sum -= row[n_ + j] * next[j];
-      for (std::size_t j = 0; j < n_ + k_; ++j) sum -= row[2 * n_ + j] * at_first[j];
-      y[i] = sum * diagonals_[(node - 1) * n_ + i];
-    }
-  }
-  std::copy_n(at_first, n_, b.data());
+  with_size([this, b]<std::size_t N>() { this->template substitute<N>(b); });
+  std::copy_n(end_values_.data() + n_, n_, b.data());
   std::copy_n(end_values_.data() + 2 * n_, k_, b.data() + (intervals_ + 1) * n_);
 }
 

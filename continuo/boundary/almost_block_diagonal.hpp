@@ -48,10 +48,25 @@ class AlmostBlockDiagonal {
   /// Width of the rows in which a node is eliminated: the node, the next one, the first one, the parameters.
   [[nodiscard]] std::size_t width() const { return 3 * n_ + k_; }
   [[nodiscard]] std::size_t stack_size() const { return 2 * n_ * width(); }
-  void scale_rows(std::size_t interval);
   void begin_elimination();
+  template <class Visit>
+  decltype(auto) with_size(const Visit& visit);
+  template <std::size_t N>
+  [[nodiscard]] std::size_t size() const {
+    return N == run_time_size ? n_ : N;
+  }
+  template <std::size_t N>
+  void scale_rows(std::size_t interval);
+  template <std::size_t N>
   void stack(std::size_t interval);
+  template <std::size_t N>
   bool reflect(std::size_t interval);
+  template <std::size_t N>
+  bool eliminate();
+  template <std::size_t N>
+  void carry_right_side(std::span<Number> b) const;
+  template <std::size_t N>
+  void substitute(std::span<Number> b) const;
   bool factor_end();
 
   std::size_t n_, k_, intervals_;

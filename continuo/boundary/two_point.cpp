@@ -67,11 +67,11 @@ class TwoPointSearch {
   void keep(TwoPointEquations<Number>& equations, bool has_values) {
     solution_.y.assign(equations.y().begin(), equations.y().end());
     solution_.p.assign(equations.p().begin(), equations.p().end());
-    solution_.f.clear();
-    for (std::size_t k = 0; k < solution_.x.size(); ++k) {
-      const auto f = equations.f_at_node(k);
-      solution_.f.insert(solution_.f.end(), f.begin(), f.end());
-    }
+    const std::vector<Number>& f = equations.f_at_nodes();
+    const std::size_t n = problem_.size, nodes = solution_.x.size();
+    solution_.f.resize(n * nodes);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < nodes; ++k) solution_.f[k * n + i] = f[i * nodes + k];
     solution_.residuals = has_values ? equations.residuals()
                                      : std::vector(solution_.x.size() - 1, std::numeric_limits<double>::quiet_NaN());
     TwoPointProgress& last = solution_.last;
@@ -123,31 +123,37 @@ class TwoPointSearch {
     return true;
   }
 
+  void begin_known(std::size_t nodes) {
+    for (auto [known, points] : {std::pair(&known_.nodes, nodes), std::pair(&known_.middles, nodes - 1)})
+      known->f.assign(problem_.size * points, Number{}), known->is_known.assign(points, false);
+  }
   /// The mesh refined, and y there by the spline; empty where nodes would be equal in the digits of a double. f is
   /// known at the old nodes, at new ones that were middles, and in the middles of intervals that are not cut.
   std::vector<Number> refine(const TwoPointEquations<Number>& equations) {
     const std::size_t n = problem_.size, old_nodes = solution_.x.size();
+    const std::size_t nodes = old_nodes + solution_.last.added;
     std::vector<double> x;
     std::vector<Number> y;
-    known_ = {};
-    const std::vector<Number> unknown(n);
-    const auto add_slope = [&](std::span<const Number> f, bool is_known) {
-      known_.f.insert(known_.f.end(), f.begin(), f.end());
-      known_.is_known.push_back(is_known);
+    x.reserve(nodes), y.reserve(n * nodes + problem_.parameters);
+    begin_known(nodes);
+    const auto keep_slope = [n](PartlyKnown<Number>& to, std::size_t point, const std::vector<Number>& f,
+                                std::size_t from) {
+      const std::size_t points = to.is_known.size(), old_points = f.size() / n;
+      to.is_known[point] = true;
+      for (std::size_t i = 0; i < n; ++i) to.f[i * points + point] = f[i * old_points + from];
     };
     for (std::size_t k = 0; k < old_nodes; ++k) {
       const double first = solution_.x[k];
+      keep_slope(known_.nodes, x.size(), equations.f_at_nodes(), k);
       x.push_back(first);
-      y.insert(y.end(), &solution_.y[k * n], &solution_.y[k * n] + n);
-      add_slope(equations.f_at_node(k), true);
+      for (std::size_t i = 0; i < n; ++i) y.push_back(solution_.y[k * n + i]);
       if (k + 1 == old_nodes) break;
+      if (parts_[k] == 1) keep_slope(known_.middles, x.size() - 1, equations.f_in_middles(), k);
+      if (parts_[k] == 2) keep_slope(known_.nodes, x.size(), equations.f_in_middles(), k);
       for (const double node : inner_nodes(first, solution_.x[k + 1], parts_[k])) {
         x.push_back(node);
         for (std::size_t i = 0; i < n; ++i) y.push_back(value(equations.spline(k, i), node - first));
-        add_slope(unknown, false);  // in the middle before it
-        add_slope(equations.f_in_middle(k), parts_[k] == 2);
       }
-      add_slope(equations.f_in_middle(k), parts_[k] == 1);
     }
     const auto is_too_short = [](double a, double b) { return !(b > a && a + (b - a) / 4 > a); };
     const auto too_short = std::ranges::adjacent_find(x, is_too_short);

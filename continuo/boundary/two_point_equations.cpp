@@ -31,6 +31,18 @@ std::pair<Number, Number> value_and_slope(const std::array<Number, 4>& c, double
   return {((c[0] * s + c[1]) * s + c[2]) * s + c[3], (c[0] * (3 * s) + c[1] * 2) * s + c[2]};
 }
 
+/// Numbers at the nodes and in the middles, component by component, as those of all points in their order.
+template <class Number>
+void in_order(const std::vector<Number>& at_nodes, const std::vector<Number>& in_middles, std::size_t components,
+              std::vector<Number>& all) {
+  const std::size_t nodes = at_nodes.size() / components, middles = nodes - 1;
+  for (std::size_t i = 0; i < components; ++i) {
+    Number* const to = &all[i * (nodes + middles)];
+    for (std::size_t k = 0; k < nodes; ++k) to[2 * k] = at_nodes[i * nodes + k];
+    for (std::size_t k = 0; k < middles; ++k) to[2 * k + 1] = in_middles[i * middles + k];
+  }
+}
+
 }  // namespace
 
 template <class Number>
@@ -42,34 +54,38 @@ TwoPointEquations<Number>::TwoPointEquations(TwoPointFunctions<Number>& function
       x_(x),
       z_(std::move(z)),
       trial_(z_.size()),
-      y_((2 * x.size() - 1) * n_),
-      f_(std::move(known.f)),
+      middles_(intervals()),
+      node_y_(nodes() * n_),
+      node_f_(std::move(known.nodes.f)),
+      middle_y_(intervals() * n_),
+      middle_f_(std::move(known.middles.f)),
       equations_(z_.size()),
       correction_(z_.size()),
-      matrix_(n_, k_, x.size() - 1) {
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    points_.push_back(x[k]);
-    points_.push_back(x[k] + 0.5 * length(k));
-  }
-  points_.push_back(x.back());
-  f_.resize(y_.size());
-  known.is_known.resize(points_.size());
-  evaluate_unknown(known.is_known);
+      matrix_(n_, k_, intervals()) {
+  for (std::size_t k = 0; k < intervals(); ++k) middles_[k] = x[k] + 0.5 * length(k);
+  node_f_.resize(node_y_.size()), middle_f_.resize(middle_y_.size());
+  set_nodes(z_);
+  evaluate_unknown(x_, node_y_, known.nodes.is_known, node_f_);
+  set_middles();
+  evaluate_unknown(middles_, middle_y_, known.middles.is_known, middle_f_);
+  evaluate_equations(z_);
 }
 
 template <class Number>
 void TwoPointEquations<Number>::set_nodes(const std::vector<Number>& z) {
-  for (std::size_t k = 0; k < nodes(); ++k) std::ranges::copy(at(z, k), at(y_, 2 * k).begin());
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t k = 0; k < nodes(); ++k) node_y_[i * nodes() + k] = z[k * n_ + i];
 }
 
 /// y in the middles, of the spline.
 template <class Number>
 void TwoPointEquations<Number>::set_middles() {
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    const auto first = at(y_, 2 * k), last = at(y_, 2 * k + 2), middle = at(y_, 2 * k + 1);
-    const auto f_first = at(f_, 2 * k), f_last = at(f_, 2 * k + 2);
-    for (std::size_t i = 0; i < n_; ++i)
-      middle[i] = (first[i] + last[i]) * 0.5 - (f_last[i] - f_first[i]) * (0.125 * length(k));
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Number* const y = &node_y_[i * nodes()];
+    const Number* const f = &node_f_[i * nodes()];
+    Number* const middle = &middle_y_[i * intervals()];
+    for (std::size_t k = 0; k < intervals(); ++k)
+      middle[k] = (y[k] + y[k + 1]) * 0.5 - (f[k + 1] - f[k]) * (0.125 * length(k));
   }
 }
 
@@ -77,73 +93,69 @@ void TwoPointEquations<Number>::set_middles() {
 template <class Number>
 void TwoPointEquations<Number>::set_residual_points() {
   const double from_middle = 0.5 * std::sqrt(3.0 / 7);
-  residual_x_.clear();
-  residual_y_.resize(2 * intervals() * n_), residual_yp_.resize(residual_y_.size());
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    for (const double theta : {0.5 - from_middle, 0.5 + from_middle}) {
-      const std::size_t point = residual_x_.size();
-      residual_x_.push_back(x_[k] + theta * length(k));
-      for (std::size_t i = 0; i < n_; ++i)
-        std::tie(at(residual_y_, point)[i], at(residual_yp_, point)[i]) =
-            value_and_slope(spline(k, i), theta * length(k));
+  const std::array thetas{0.5 - from_middle, 0.5 + from_middle};
+  const std::size_t points = 2 * intervals();
+  residual_x_.resize(points), residual_y_.resize(points * n_), residual_yp_.resize(points * n_);
+  for (std::size_t q = 0; q < points; ++q) residual_x_[q] = x_[q / 2] + thetas[q % 2] * length(q / 2);
+  for (std::size_t i = 0; i < n_; ++i) {
+    Number* const y = &residual_y_[i * points];
+    Number* const yp = &residual_yp_[i * points];
+    for (std::size_t k = 0; k < intervals(); ++k) {
+      const std::array<Number, 4> c = spline(k, i);
+      for (std::size_t e = 0; e < 2; ++e)
+        std::tie(y[2 * k + e], yp[2 * k + e]) = value_and_slope(c, thetas[e] * length(k));
     }
   }
 }
 
+/// f at those of the points x where it is not known already.
 template <class Number>
-void TwoPointEquations<Number>::add_point(double x, std::span<const Number> y) {
-  part_x_.push_back(x);
-  part_y_.insert(part_y_.end(), y.begin(), y.end());
+void TwoPointEquations<Number>::evaluate_unknown(std::span<const double> x, const std::vector<Number>& y,
+                                                 const std::vector<char>& is_known, std::vector<Number>& f) {
+  if (is_known.empty()) return functions_.derivative(x, y, p(), f);
+  std::vector<std::size_t> unknown;
+  std::vector<double> some_x;
+  for (std::size_t q = 0; q < x.size(); ++q)
+    if (!is_known[q]) unknown.push_back(q), some_x.push_back(x[q]);
+  if (unknown.empty()) return;
+  std::vector<Number> some_y, some_f(n_ * unknown.size());
+  for (std::size_t i = 0; i < n_; ++i)
+    for (const std::size_t q : unknown) some_y.push_back(y[i * x.size() + q]);
+  functions_.derivative(some_x, some_y, p(), some_f);
+  for (std::size_t i = 0, part = 0; i < n_; ++i)
+    for (const std::size_t q : unknown) f[i * x.size() + q] = some_f[part++];
 }
 
-/// f at the points added.
+/// f in the middles and at the points of the residual, in one call.
 template <class Number>
-void TwoPointEquations<Number>::evaluate_points(std::span<const Number> p) {
-  part_f_.resize(part_y_.size());
-  if (!part_x_.empty()) functions_.derivative(part_x_, part_y_, p, part_f_);
+void TwoPointEquations<Number>::evaluate_with_residual_points(std::span<const Number> p) {
+  set_residual_points();
+  const std::size_t points = 3 * intervals();
+  std::vector<double> x(points);
+  std::vector<Number> y(n_ * points), f(n_ * points);
+  for (std::size_t k = 0; k < intervals(); ++k)
+    x[3 * k] = residual_x_[2 * k], x[3 * k + 1] = middles_[k], x[3 * k + 2] = residual_x_[2 * k + 1];
+  for (std::size_t k = 0; k < n_ * intervals(); ++k)  // of one component after the other
+    y[3 * k] = residual_y_[2 * k], y[3 * k + 1] = middle_y_[k], y[3 * k + 2] = residual_y_[2 * k + 1];
+  functions_.derivative(x, y, p, f);
+  residual_f_.resize(2 * intervals() * n_);
+  for (std::size_t k = 0; k < n_ * intervals(); ++k)
+    residual_f_[2 * k] = f[3 * k], middle_f_[k] = f[3 * k + 1], residual_f_[2 * k + 1] = f[3 * k + 2];
 }
 
-/// Where f is not known already. Two calls: in the middles y follows from the slopes at the nodes.
-template <class Number>
-void TwoPointEquations<Number>::evaluate_unknown(const std::vector<bool>& is_known) {
-  set_nodes(z_);
-  for (std::size_t first = 0; first < 2; ++first) {
-    if (first == 1) set_middles();
-    begin_points();
-    for (std::size_t q = first; q < points_.size(); q += 2)
-      if (!is_known[q]) add_point(points_[q], at(y_, q));
-    evaluate_points(p());
-    for (std::size_t q = first, part = 0; q < points_.size(); q += 2)
-      if (!is_known[q]) std::ranges::copy(at(part_f_, part++), at(f_, q).begin());
-  }
-  evaluate_equations(z_);
-}
-
-/// f everywhere, for the unknowns z. Where points are few, those of the residual are taken along: that saves a call at
-/// the end.
+/// f everywhere, for the unknowns z. Two calls: in the middles y follows from the slopes at the nodes. Where points are
+/// few, those of the residual are taken along: that saves a call at the end.
 template <class Number>
 void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
   const auto p = std::span(z).subspan(nodes() * n_);
   set_nodes(z);
-  begin_points();
-  for (std::size_t k = 0; k < nodes(); ++k) add_point(x_[k], at(y_, 2 * k));
-  evaluate_points(p);
-  for (std::size_t k = 0; k < nodes(); ++k) std::ranges::copy(at(part_f_, k), at(f_, 2 * k).begin());
+  functions_.derivative(x_, node_y_, p, node_f_);
   set_middles();
   has_residuals_ = intervals() <= few_intervals;
-  if (has_residuals_) set_residual_points();
-  begin_points();
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    if (has_residuals_) add_point(residual_x_[2 * k], at(residual_y_, 2 * k));
-    add_point(points_[2 * k + 1], at(y_, 2 * k + 1));
-    if (has_residuals_) add_point(residual_x_[2 * k + 1], at(residual_y_, 2 * k + 1));
-  }
-  evaluate_points(p);
-  residual_f_.resize(2 * intervals() * n_);
-  for (std::size_t k = 0, part = 0; k < intervals(); ++k) {
-    if (has_residuals_) std::ranges::copy(at(part_f_, part++), at(residual_f_, 2 * k).begin());
-    std::ranges::copy(at(part_f_, part++), at(f_, 2 * k + 1).begin());
-    if (has_residuals_) std::ranges::copy(at(part_f_, part++), at(residual_f_, 2 * k + 1).begin());
+  if (has_residuals_) {
+    evaluate_with_residual_points(p);
+  } else {
+    functions_.derivative(middles_, middle_y_, p, middle_f_);
   }
   evaluate_equations(z);
 }
@@ -151,14 +163,15 @@ void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
 /// What is left of each equation.
 template <class Number>
 void TwoPointEquations<Number>::evaluate_equations(const std::vector<Number>& z) {
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    const auto first = at(z, k), last = at(z, k + 1);
-    const auto left = at(equations_, k);
-    const auto f_first = f_at_node(k), middle = f_in_middle(k), f_last = f_at_node(k + 1);
-    for (std::size_t i = 0; i < n_; ++i)
-      left[i] = last[i] - first[i] - (f_first[i] + f_last[i] + middle[i] * 4) * (length(k) / 6);
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Number* const y = &node_y_[i * nodes()];
+    const Number* const f = &node_f_[i * nodes()];
+    const Number* const middle = &middle_f_[i * intervals()];
+    for (std::size_t k = 0; k < intervals(); ++k)
+      equations_[k * n_ + i] = y[k + 1] - y[k] - (f[k] + f[k + 1] + middle[k] * 4) * (length(k) / 6);
   }
-  functions_.conditions(at(z, 0), at(z, intervals()), std::span(z).subspan(nodes() * n_),
+  const auto unknowns = std::span(z);
+  functions_.conditions(unknowns.first(n_), unknowns.subspan(intervals() * n_, n_), unknowns.subspan(nodes() * n_),
                         std::span(equations_).subspan(intervals() * n_));
 }
 
@@ -202,9 +215,17 @@ void TwoPointEquations<Number>::fill_interval(std::size_t k) {
 /// False where a derivative is not finite.
 template <class Number>
 bool TwoPointEquations<Number>::fill_matrix() {
-  functions_.jacobians(points_, y_, p(), f_, jacobians_);
+  const std::size_t points = nodes() + intervals();
+  std::vector<double> x(points);
+  std::vector<Number> y(points * n_), f(points * n_);
+  for (std::size_t k = 0; k < nodes(); ++k) x[2 * k] = x_[k];
+  for (std::size_t k = 0; k < intervals(); ++k) x[2 * k + 1] = middles_[k];
+  in_order(node_y_, middle_y_, n_, y);
+  in_order(node_f_, middle_f_, n_, f);
+  functions_.jacobians(x, y, p(), f, jacobians_);
+  const auto at_nodes = this->y();
   const ConditionJacobians<Number>& of_conditions =
-      functions_.condition_jacobians(at(z_, 0), at(z_, intervals()), p(), conditions());
+      functions_.condition_jacobians(at_nodes.first(n_), at_nodes.last(n_), p(), conditions());
   for (std::size_t k = 0; k < intervals(); ++k) fill_interval(k);
   std::ranges::copy(of_conditions.first, matrix_.first_condition().begin());
   std::ranges::copy(of_conditions.last, matrix_.last_condition().begin());
@@ -222,7 +243,7 @@ bool TwoPointEquations<Number>::is_solved(double tolerance, double condition_tol
   for (std::size_t k = 0; k < intervals(); ++k) {
     const double most = 2.0 / 3 * length(k) * part_of_tolerance * tolerance;
     for (std::size_t i = 0; i < n_; ++i)
-      if (!(size_of(equations_[k * n_ + i]) < most * (1 + size_of(f_in_middle(k)[i])))) return false;
+      if (!(size_of(equations_[k * n_ + i]) < most * (1 + size_of(middle_f_[i * intervals() + k])))) return false;
   }
   return std::ranges::all_of(conditions(), [&](const Number& g) { return size_of(g) < condition_tolerance; });
 }
@@ -250,13 +271,18 @@ NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double conditi
     for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - correction_[i] * part;
     functions_.restrict_first(std::span(trial_).first(n_));
     evaluate(trial_);
+    if (part == 1 && jacobians < most_jacobians && is_solved(tolerance, condition_tolerance)) {
+      z_.swap(trial_);
+      return NewtonAttempt::solved;
+    }
     simplified_ = equations_;
     matrix_.solve(simplified_);
     const double next = squared_size_of<Number>(simplified_);
     const bool descends = next < (1 - 2 * part * descent) * cost;
     if (!descends && (part > least_damping || !std::isfinite(next))) return NewtonAttempt::refused;
     z_.swap(trial_);
-    if (jacobians < most_jacobians && is_solved(tolerance, condition_tolerance)) return NewtonAttempt::solved;
+    if (part < 1 && jacobians < most_jacobians && is_solved(tolerance, condition_tolerance))
+      return NewtonAttempt::solved;
     matrix_serves = part == 1 && jacobians < most_jacobians;
     return NewtonAttempt::taken;
   };
@@ -274,19 +300,21 @@ std::vector<double> TwoPointEquations<Number>::residuals() {
     residual_f_.resize(residual_y_.size());
     functions_.derivative(residual_x_, residual_y_, p(), residual_f_);
   }
-  std::vector<double> result(intervals());
-  for (std::size_t k = 0; k < intervals(); ++k) {
-    double middle = 0, others = 0;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double of_middle = 1.5 * size_of(equations_[k * n_ + i]) / (length(k) * (1 + size_of(f_in_middle(k)[i])));
-      middle += of_middle * of_middle;
-      for (const std::size_t e : {2 * k * n_ + i, (2 * k + 1) * n_ + i}) {
-        const double one = size_of(residual_yp_[e] - residual_f_[e]) / (1 + size_of(residual_f_[e]));
-        others += one * one;
+  std::vector<double> middle(intervals()), others(intervals());
+  for (std::size_t i = 0; i < n_; ++i) {
+    const std::size_t first = i * intervals();
+    for (std::size_t k = 0; k < intervals(); ++k) {
+      const double one = 1.5 * size_of(equations_[k * n_ + i]) / (length(k) * (1 + size_of(middle_f_[first + k])));
+      middle[k] += one * one;
+      for (const std::size_t e : {2 * (first + k), 2 * (first + k) + 1}) {
+        const double other = size_of(residual_yp_[e] - residual_f_[e]) / (1 + size_of(residual_f_[e]));
+        others[k] += other * other;
       }
     }
-    result[k] = std::sqrt(0.5 * (32.0 / 45 * middle + 49.0 / 90 * others));
   }
+  std::vector<double> result(intervals());
+  for (std::size_t k = 0; k < intervals(); ++k)
+    result[k] = std::sqrt(0.5 * (32.0 / 45 * middle[k] + 49.0 / 90 * others[k]));
   return result;
 }
 
@@ -297,15 +325,15 @@ template <class Number>
 double TwoPointEquations<Number>::relative_error(double tolerance) {
   const double from_middle = 0.5 * std::sqrt(3.0 / 7);
   std::vector<Number>& error = simplified_;
-  std::ranges::fill(error, Number{});
+  error.assign(z_.size(), Number{});
   std::vector<Number> first(n_), last(n_);
   for (std::size_t k = 0; k < intervals(); ++k) {
     const double h = length(k);
     const Number* const jacobian = &jacobians_.by_y[(2 * k + 1) * n_ * n_];
     for (std::size_t i = 0; i < n_; ++i) {
-      const std::size_t e = 2 * k * n_ + i;
+      const std::size_t e = 2 * (i * intervals() + k);
       first[i] = residual_yp_[e] - residual_f_[e];
-      last[i] = residual_yp_[e + n_] - residual_f_[e + n_];
+      last[i] = residual_yp_[e + 1] - residual_f_[e + 1];
     }
     for (std::size_t i = 0; i < n_; ++i) {
       const Number middle = equations_[k * n_ + i] * 1.5;  // times h
@@ -322,7 +350,7 @@ double TwoPointEquations<Number>::relative_error(double tolerance) {
     for (std::size_t k = 0; k < nodes(); ++k) {
       of_error = std::max(of_error, size_of(error[k * n_ + i]));
       of_y = std::max(of_y, size_of(z_[k * n_ + i]));
-      of_f = std::max(of_f, size_of(f_at_node(k)[i]));
+      of_f = std::max(of_f, size_of(node_f_[i * nodes() + k]));
     }
     // y may be zero: then what the residual allowed makes over the interval is no error.
     greatest = std::max(greatest, of_error / (of_y + tolerance * (1 + of_f) * (x_.back() - x_.front())));
@@ -332,15 +360,14 @@ double TwoPointEquations<Number>::relative_error(double tolerance) {
 
 template <class Number>
 bool TwoPointEquations<Number>::is_finite(TwoPointSolution<Number>& note) const {
-  for (std::size_t first = 0; first < 2; ++first) {  // the middles follow from the nodes
-    for (std::size_t q = first; q < points_.size(); q += 2) {
-      for (std::size_t i = 0; i < n_; ++i) {
-        if (boundary::is_finite(at(f_, q)[i])) continue;
-        note.not_finite = TwoPointQuantity::derivative, note.component = i, note.where = points_[q];
-        return false;
-      }
-    }
-  }
+  const auto find = [&](std::span<const double> x, const std::vector<Number>& f) {
+    const auto strange = std::ranges::find_if_not(f, [](const Number& one) { return boundary::is_finite(one); });
+    if (strange == f.end()) return true;
+    const auto where = static_cast<std::size_t>(strange - f.begin());
+    note.not_finite = TwoPointQuantity::derivative, note.component = where / x.size(), note.where = x[where % x.size()];
+    return false;
+  };
+  if (!find(x_, node_f_) || !find(middles_, middle_f_)) return false;  // the middles follow from the nodes
   for (std::size_t i = 0; i < n_ + k_; ++i) {
     if (boundary::is_finite(conditions()[i])) continue;
     note.not_finite = TwoPointQuantity::conditions, note.component = i;

@@ -14,11 +14,17 @@
 
 namespace continuo::boundary {
 
-/// f at nodes and the middles between them, in order, as far as it is known.
+/// f at some points, component by component, as far as it is known: f_i of point q at i * count + q.
+template <class Number>
+struct PartlyKnown {
+  std::vector<Number> f;
+  std::vector<char> is_known;  // of each point; empty: nowhere
+};
+
+/// f at the nodes of a mesh and at the middles between them, as far as it is known.
 template <class Number>
 struct KnownSlopes {
-  std::vector<Number> f;
-  std::vector<bool> is_known;  // of each point; empty: nowhere
+  PartlyKnown<Number> nodes, middles;
 };
 
 /// The equations on one mesh. What is said of the solution holds for the unknowns evaluated last.
@@ -32,17 +38,20 @@ class TwoPointEquations {
   /// Until residuals are well below the tolerances or no progress is made.
   NewtonEnding iterate(double tolerance, double condition_tolerance);
 
-  /// y at the nodes.
+  /// y at the nodes, node by node.
   [[nodiscard]] std::span<const Number> y() const { return std::span(z_).first(nodes() * n_); }
   /// The parameters.
   [[nodiscard]] std::span<const Number> p() const { return std::span(z_).subspan(nodes() * n_); }
-  /// f at node k.
-  [[nodiscard]] std::span<const Number> f_at_node(std::size_t k) const { return at(f_, 2 * k); }
-  /// f in the middle of interval k.
-  [[nodiscard]] std::span<const Number> f_in_middle(std::size_t k) const { return at(f_, 2 * k + 1); }
+  /// f at the nodes and in the middles, component by component.
+  /// @{
+  [[nodiscard]] const std::vector<Number>& f_at_nodes() const { return node_f_; }
+  [[nodiscard]] const std::vector<Number>& f_in_middles() const { return middle_f_; }
+  /// @}
   /// The spline's component i in interval k.
   [[nodiscard]] std::array<Number, 4> spline(std::size_t k, std::size_t i) const {
-    return cubic(length(k), at(y_, 2 * k)[i], at(y_, 2 * k + 2)[i], at(f_, 2 * k)[i], at(f_, 2 * k + 2)[i]);
+    const Number* const y = &node_y_[i * nodes() + k];
+    const Number* const f = &node_f_[i * nodes() + k];
+    return cubic(length(k), y[0], y[1], f[0], f[1]);
   }
   /// Of each interval: y' - f, relative to 1 + |f|, root mean square.
   [[nodiscard]] std::vector<double> residuals();
@@ -58,20 +67,12 @@ class TwoPointEquations {
   [[nodiscard]] std::size_t nodes() const { return x_.size(); }
   [[nodiscard]] std::size_t intervals() const { return x_.size() - 1; }
   [[nodiscard]] double length(std::size_t k) const { return x_[k + 1] - x_[k]; }
-  /// The numbers of a point.
-  [[nodiscard]] std::span<const Number> at(const std::vector<Number>& numbers, std::size_t point) const {
-    return std::span(numbers).subspan(point * n_, n_);
-  }
-  [[nodiscard]] std::span<Number> at(std::vector<Number>& numbers, std::size_t point) const {
-    return std::span(numbers).subspan(point * n_, n_);
-  }
   void set_nodes(const std::vector<Number>& z);
   void set_middles();
   void set_residual_points();
-  void begin_points() { part_x_.clear(), part_y_.clear(); }
-  void add_point(double x, std::span<const Number> y);
-  void evaluate_points(std::span<const Number> p);
-  void evaluate_unknown(const std::vector<bool>& is_known);
+  void evaluate_unknown(std::span<const double> x, const std::vector<Number>& y, const std::vector<char>& is_known,
+                        std::vector<Number>& f);
+  void evaluate_with_residual_points(std::span<const Number> p);
   void evaluate(const std::vector<Number>& z);
   void evaluate_equations(const std::vector<Number>& z);
   bool fill_matrix();
@@ -82,14 +83,12 @@ class TwoPointEquations {
   std::size_t n_, k_;
   std::span<const double> x_;
   std::vector<Number> z_, trial_;
-  std::vector<double> points_;                                 // nodes and middles in order
-  std::vector<Number> y_, f_;                                  // there
+  std::vector<double> middles_;
+  std::vector<Number> node_y_, node_f_, middle_y_, middle_f_;  // component by component, as those that follow
   std::vector<double> residual_x_;                             // two points of each interval
   std::vector<Number> residual_y_, residual_yp_, residual_f_;  // the spline, its slope and f there
   bool has_residuals_ = false;                                 // f is known there
-  std::vector<double> part_x_;                                 // the points of a call of f
-  std::vector<Number> part_y_, part_f_;
-  std::vector<Number> equations_;  // what is left of each
+  std::vector<Number> equations_;                              // what is left of each, interval by interval
   std::vector<Number> correction_, simplified_;
   PointJacobians<Number> jacobians_;
   AlmostBlockDiagonal<Number> matrix_;

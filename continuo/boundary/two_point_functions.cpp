@@ -39,44 +39,43 @@ void multiply(const std::vector<Number>& matrix, std::span<Number> x, std::size_
 
 }  // namespace
 
+/// S y / (x - a) is added, in the order of the components; at a the slope is (I - S)^+ f.
 template <class Number>
-void TwoPointFunctions<Number>::derivative(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f) {
-  const std::size_t n = size();
-  by_component_.resize(y.size());
-  slopes_by_component_.resize(y.size());
-  transpose<Number>(y, x.size(), by_component_);
-  problem_.derivative(x, by_component_, p, slopes_by_component_);
-  transpose<Number>(slopes_by_component_, n, f);
-  if (problem_.singular_term.empty()) return;
-  for (std::size_t q = 0; q < x.size(); ++q) {
-    const auto slope = f.subspan(q * n, n);
+void TwoPointFunctions<Number>::add_singular_term(std::span<const double> x, Numbers y, std::span<Number> f) const {
+  const std::size_t n = size(), count = x.size();
+  for (std::size_t q = 0; q < count; ++q) {
     if (x[q] == start_) {
-      multiply(problem_.first_derivative, slope);
+      multiply(problem_.first_derivative, f.subspan(q, (n - 1) * count + 1), count);
       continue;
     }
     const double factor = 1 / (x[q] - start_);
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) slope[i] += problem_.singular_term[i * n + j] * y[q * n + j] * factor;
+      for (std::size_t j = 0; j < n; ++j)
+        f[i * count + q] += problem_.singular_term[i * n + j] * y[j * count + q] * factor;
   }
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::derivative(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f) {
+  problem_.derivative(x, y, p, f);
+  if (!problem_.singular_term.empty()) add_singular_term(x, y, f);
 }
 
 /// At the nodes and at the middles, by a call for each.
 template <class Number>
 void TwoPointFunctions<Number>::derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p,
                                                    std::span<Number> f) {
-  const std::size_t n = size();
+  const std::size_t n = size(), count = x.size();
   for (std::size_t first = 0; first < 2; ++first) {
-    std::vector<double> some_x;
-    std::vector<Number> some_y;
-    for (std::size_t q = first; q < x.size(); q += 2) {
-      some_x.push_back(x[q]);
-      some_y.insert(some_y.end(), y.begin() + static_cast<std::ptrdiff_t>(q * n),
-                    y.begin() + static_cast<std::ptrdiff_t>((q + 1) * n));
-    }
-    std::vector<Number> some_f(some_y.size());
+    const std::size_t some = (count - first + 1) / 2;
+    std::vector<double> some_x(some);
+    std::vector<Number> some_y(n * some), some_f(n * some);
+    for (std::size_t q = 0; q < some; ++q) some_x[q] = x[2 * q + first];
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t q = 0; q < some; ++q) some_y[i * some + q] = y[i * count + 2 * q + first];
     derivative(some_x, some_y, p, some_f);
-    for (std::size_t q = first, at = 0; q < x.size(); q += 2, at += n)
-      std::copy_n(some_f.begin() + static_cast<std::ptrdiff_t>(at), n, f.begin() + static_cast<std::ptrdiff_t>(q * n));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t q = 0; q < some; ++q) f[i * count + 2 * q + first] = some_f[i * some + q];
   }
 }
 
@@ -92,35 +91,38 @@ bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Num
   const std::size_t chunk = std::max<std::size_t>(1, most_numbers_at_once / (n * copies));
   double greatest = 0;
   for (const Number& slope : f) greatest = std::max(greatest, size_of(slope));
-  std::vector<double> all_x;
-  std::vector<Number> all_y, all_f;
+  auto& [all_x, all_y, all_f] = displaced_;
   for (std::size_t begin = 0; begin < x.size(); begin += chunk) {
-    const std::size_t count = std::min(chunk, x.size() - begin);
-    all_x.clear(), all_y.clear();
-    for (std::size_t q = begin; q < begin + count; ++q) {
-      all_x.insert(all_x.end(), copies, x[q]);
-      const std::size_t first = all_y.size();
-      for (std::size_t c = 0; c < copies; ++c) all_y.insert(all_y.end(), &y[q * n], &y[q * n] + n);
-      for (std::size_t j = 0; j < n; ++j) {
-        Number& moved = all_y[first + (as_is + j) * n + j];
-        moved = displaced(moved);
+    const std::size_t count = std::min(chunk, x.size() - begin), all = count * copies;
+    all_x.resize(all), all_y.resize(all * n), all_f.resize(all * n);
+    for (std::size_t q = 0; q < count; ++q)
+      for (std::size_t c = 0; c < copies; ++c) all_x[q * copies + c] = x[begin + q];
+    for (std::size_t i = 0; i < n; ++i) {
+      const Number* const from = &y[i * x.size() + begin];
+      Number* const to = &all_y[i * all];
+      for (std::size_t q = 0; q < count; ++q) {
+        for (std::size_t c = 0; c < copies; ++c) to[q * copies + c] = from[q];
+        to[q * copies + as_is + i] = displaced(from[q]);
       }
     }
-    all_f.resize(all_y.size());
     derivative(all_x, all_y, p, all_f);
-    for (std::size_t q = 0; q < count; ++q) {
-      const Number* const before = &f[(begin + q) * n];
-      const Number* const copy = &all_f[q * copies * n];
-      for (std::size_t i = 0; i < as_is * n; ++i)
-        if (!(size_of(copy[i] - before[i]) <= rounding * greatest)) return false;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Number* const before = &f[i * x.size() + begin];
+      const Number* const found = &all_f[i * all];
+      for (std::size_t q = 0; q < as_is * count; ++q)
+        if (!(size_of(found[q * copies] - before[q]) <= rounding * greatest)) return false;
       for (std::size_t j = 0; j < n; ++j) {
-        const std::size_t moved = (q * copies + as_is + j) * n;
-        const Number inverse = reciprocal(all_y[moved + j] - y[(begin + q) * n + j]);
-        for (std::size_t i = 0; i < n; ++i) {
-          const Number slope = (all_f[moved + i] - before[i]) * inverse;
-          if (!is_finite(slope)) return false;
-          by_y[((begin + q) * n + i) * n + j] = slope;
+        const Number* const moved = &all_y[j * all + as_is + j];
+        const Number* const unmoved = &y[j * x.size() + begin];
+        Number* const to = &by_y[begin * n * n + i * n + j];
+        bool finite = true;
+        for (std::size_t q = 0; q < count; ++q) {
+          const Number inverse = reciprocal(moved[q * copies] - unmoved[q]);
+          const Number slope = (found[q * copies + as_is + j] - before[q]) * inverse;
+          finite = finite && is_finite(slope);
+          to[q * n * n] = slope;
         }
+        if (!finite) return false;
       }
     }
   }
@@ -131,15 +133,16 @@ bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Num
 template <class Number>
 void TwoPointFunctions<Number>::jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f,
                                                        std::vector<Number>& by_y) {
-  const std::size_t n = size();
+  const std::size_t n = size(), count = x.size();
   std::vector<Number> moved(y.begin(), y.end()), moved_f(f.size());
   for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t q = 0; q < x.size(); ++q) moved[q * n + j] = displaced(y[q * n + j]);
+    for (std::size_t q = 0; q < count; ++q) moved[j * count + q] = displaced(y[j * count + q]);
     derivative_on_mesh(x, moved, p, moved_f);
-    for (std::size_t q = 0; q < x.size(); ++q) {
-      const Number inverse = reciprocal(moved[q * n + j] - y[q * n + j]);
-      for (std::size_t i = 0; i < n; ++i) by_y[(q * n + i) * n + j] = (moved_f[q * n + i] - f[q * n + i]) * inverse;
-      moved[q * n + j] = y[q * n + j];
+    for (std::size_t q = 0; q < count; ++q) {
+      const Number inverse = reciprocal(moved[j * count + q] - y[j * count + q]);
+      for (std::size_t i = 0; i < n; ++i)
+        by_y[(q * n + i) * n + j] = (moved_f[i * count + q] - f[i * count + q]) * inverse;
+      moved[j * count + q] = y[j * count + q];
     }
   }
 }
@@ -147,7 +150,7 @@ void TwoPointFunctions<Number>::jacobians_by_component(std::span<const double> x
 template <class Number>
 void TwoPointFunctions<Number>::parameter_jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f,
                                                     std::vector<Number>& by_p) {
-  const std::size_t k = parameters();
+  const std::size_t n = size(), k = parameters();
   std::vector<Number> moved(p.begin(), p.end()), moved_f(f.size());
   for (std::size_t l = 0; l < k; ++l) {
     moved[l] = displaced(p[l]);
@@ -158,7 +161,9 @@ void TwoPointFunctions<Number>::parameter_jacobians(std::span<const double> x, N
     }
     const Number inverse = reciprocal(moved[l] - p[l]);
     moved[l] = p[l];
-    for (std::size_t i = 0; i < f.size(); ++i) by_p[i * k + l] = (moved_f[i] - f[i]) * inverse;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t q = 0; q < x.size(); ++q)
+        by_p[(q * n + i) * k + l] = (moved_f[i * x.size() + q] - f[i * x.size() + q]) * inverse;
   }
 }
 
@@ -167,10 +172,8 @@ template <class Number>
 void TwoPointFunctions<Number>::given_jacobians(std::span<const double> x, Numbers y, Numbers p,
                                                 PointJacobians<Number>& result) {
   const std::size_t n = size(), k = parameters();
-  by_component_.resize(y.size());
-  transpose<Number>(y, x.size(), by_component_);
   std::vector<Number> by_y(result.by_y.size()), by_p(result.by_p.size());
-  problem_.derivative_jacobian(x, by_component_, p, by_y, by_p);
+  problem_.derivative_jacobian(x, y, p, by_y, by_p);
   transpose<Number>(by_y, n * n, result.by_y);
   if (k > 0) transpose<Number>(by_p, n * k, result.by_p);
   if (problem_.singular_term.empty()) return;

@@ -1,5 +1,5 @@
-// The functions of a two-point problem at many points, node by node, with the singular term and with derivatives by
-// differences. Internal to two_point.
+// The functions of a two-point problem at many points, with the singular term and with derivatives by differences.
+// Internal to two_point.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -23,7 +23,7 @@ struct ConditionJacobians {
   std::vector<Number> residuals;  // there
 };
 
-/// y and f are given node by node, y_i of point q at q * n + i.
+/// y and f are given component by component, as the problem's functions take them: y_i of point q at i * count + q.
 template <class Number>
 class TwoPointFunctions {
  public:
@@ -52,6 +52,7 @@ class TwoPointFunctions {
 
  private:
   using Numbers = std::span<const Number>;
+  void add_singular_term(std::span<const double> x, Numbers y, std::span<Number> f) const;
   void given_jacobians(std::span<const double> x, Numbers y, Numbers p, PointJacobians<Number>& result);
   bool jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
   void jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
@@ -64,7 +65,10 @@ class TwoPointFunctions {
   double start_;
   bool points_are_independent_ = true, points_were_compared_ = false;
   ConditionJacobians<Number> condition_jacobians_;
-  std::vector<Number> by_component_, slopes_by_component_;
+  struct {
+    std::vector<double> x;
+    std::vector<Number> y, f;
+  } displaced_;  // the points of differences, kept as memory for the next ones
 };
 
 extern template class TwoPointFunctions<double>;
