@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include <gtest/gtest.h>
+#include <tests/bodies/heaps.hpp>
 
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
@@ -121,6 +122,66 @@ TEST(Sleep, IsPartOfASnapshot) {
   EXPECT_EQ(again.statistics().asleep, 3u);
   run(motion, 3), run(again, 3);
   EXPECT_EQ(state_hash(other), state_hash(world));
+}
+
+// In a pile some bodies always come to rest later than their neighbours. These must not wake the others for ever. When
+// the pile is woken again, it has the impulses with which it fell asleep: without them its balls would jump by tenths
+// of a length per time. In gravity that is 9.81 per time^2, an awake ball at rest without any impulse would have 0.16
+// after a step.
+TEST(Sleep, APileFallsAsleepAndWakesAtRest) {
+  World<double, 3> world = heap<double>(100, 4, 1);
+  for (auto& material : world.material) material.rolling_resistance = 0.05;
+  FastMotion<double, 3> motion(world, with_sleep);
+  for (int i = 0; i < 900 && motion.statistics().asleep < world.size(); ++i) ASSERT_TRUE(motion.advance());
+  ASSERT_EQ(motion.statistics().asleep, world.size());
+  const std::size_t lists = motion.statistics().lists;
+  const auto position = world.position;
+  run(motion, 1);
+  EXPECT_EQ(world.position, position);
+  EXPECT_LE(motion.statistics().lists, lists + 1);
+  world.gravity[0] = 1e-4;  // a changed force wakes all
+  run(motion, 0.1);
+  EXPECT_EQ(motion.statistics().asleep, 0u);
+  for (const auto& v : world.velocity) EXPECT_LT(length(v), 0.05);
+}
+
+// What arrives slower than the speed of sleep wakes nothing, but becomes part of the island that it touches: what wakes
+// the one wakes the other.
+TEST(Sleep, ASlowTouchWakesNothing) {
+  World<double, 3> world = stack_of(1);
+  const auto roll = [&](double speed) {
+    world.velocity[1] = {{-speed, 0, 0}};
+    world.spin[1] = {{0, -2 * speed, 0}};
+  };
+  ASSERT_TRUE(world.add({.position = {{1.046, 0, 0.5}}}));
+  ASSERT_TRUE(world.add({.position = {{9, 0, 30}}}));  // is awake all the time
+  roll(0.06);
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 0.6);
+  ASSERT_EQ(motion.statistics().asleep, 1u);
+  roll(0.03);  // slow, and it will touch in a third of a second
+  run(motion, 1);
+  EXPECT_EQ(motion.statistics().asleep, 2u);
+  EXPECT_NEAR(world.position[0][0], 0, 1e-12);
+  EXPECT_LT(world.position[1][0], 1.001);
+  world.velocity[0] = {{0, 0, 1}};
+  ASSERT_TRUE(motion.advance());
+  EXPECT_EQ(motion.statistics().asleep, 0u);
+}
+
+// A ball that a force presses slowly against a sleeping one moves it: the two together are accelerated by the force.
+TEST(Sleep, WhatIsPressedByAForceWakes) {
+  World<double, 3> world;
+  ASSERT_TRUE(world.add({.mass = 1}));
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 1);
+  ASSERT_EQ(motion.statistics().asleep, 1u);
+  World<double, 3> pushed = world;
+  ASSERT_TRUE(pushed.add({.position = {{-1.0001, 0, 0}}, .mass = 1}));
+  pushed.constant_force[1] = {{1, 0, 0}};
+  FastMotion<double, 3> together(pushed, with_sleep);
+  run(together, 2);
+  EXPECT_NEAR(pushed.velocity[0][0], 1, 0.02);  // force 1, mass 2, 2 s
 }
 
 // Taking out the lowest of a stack lets the others fall.

@@ -95,6 +95,15 @@ class ContactList {
     for (auto* batches : {&between_movers, &with_fixed, &with_wall}) batches->before = {};
   }
 
+  /// After `keep`: sets aside the impulses of contacts without a moving body, and takes back those of bodies that move
+  /// again. number_at[k] is the number in the world of the body that was at place k when impulses were kept;
+  /// moves(number) is its present state.
+  template <class Moves>
+  void exchange_with_resting(std::span<const std::uint32_t> number_at, const Moves& moves) {
+    exchange_resting(number_at, moves, kept_, resting_);
+  }
+  [[nodiscard]] bool has_resting() const { return !resting_.empty(); }
+
   /// Puts the contacts that may touch into batches. combine_rule_of(a, b) gives the combined material of the bodies or
   /// walls at two places; it is called only where materials are special. place_before[k] is the place that the body at
   /// k had when impulses were kept; if it is empty, places are the same. reach_of[block] says how near the pairs of a
@@ -156,7 +165,7 @@ class ContactList {
   }
 
   [[nodiscard]] std::size_t memory() const {
-    std::size_t sum = rows.memory() + kept_.memory();
+    std::size_t sum = rows.memory() + kept_.memory() + resting_.capacity() * sizeof(resting_[0]);
     for (const auto* batches : {&between_movers, &with_fixed, &with_wall}) sum += batches->memory();
     return sum;
   }
@@ -357,6 +366,7 @@ class ContactList {
   }
 
   KeptImpulses<Real, Dim> kept_;
+  std::vector<RestingImpulse<Real, Dim>> resting_;
   bool has_kept_ = false;  // false: the impulses are in the batches of the step before
 };
 

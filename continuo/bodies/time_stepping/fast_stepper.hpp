@@ -65,6 +65,7 @@ class FastMotion<Real, Dim>::Stepper {
     ContactList<Real, Dim> contacts = contacts_;
     ThreadTeam alone(1);
     if (!is_restored_) contacts.keep(alone);
+    if (contacts.has_resting()) contacts.exchange_with_resting(list_.order(), [](std::uint32_t) { return true; });
     contacts.transfer_kept(writer);
     writer(touches_), writer(sleep_), writer(is_other_at_rest_);
   }
@@ -101,6 +102,7 @@ class FastMotion<Real, Dim>::Stepper {
     std::swap(world_.position, x);
     load();
     place_before_ = {};
+    exchange_with_resting();
     is_other_at_rest_ = is_other_at_rest;
     is_restored_ = true;
   }
@@ -117,7 +119,9 @@ class FastMotion<Real, Dim>::Stepper {
   /// The stages of a step.
   [[nodiscard]] Status step() {
     if (Status status = check_options(); !status) return status;
-    load_changed();
+    wake_changed();
+    if (!is_other_at_rest_ && sleep_.is_all_asleep()) return rest();
+    load();
     list_pairs();
     choose_contacts();
     if (!integrate())
@@ -141,11 +145,18 @@ class FastMotion<Real, Dim>::Stepper {
     return {};
   }
 
-  /// Loads the bodies as the caller has left them. Bodies that the caller has changed wake.
-  void load_changed() {
+  /// Bodies that the caller has changed wake.
+  void wake_changed() {
     if (world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
     is_other_at_rest_ |= sleep_.wake_changed(world_);
-    load();
+  }
+  /// A step while all bodies sleep.
+  [[nodiscard]] Status rest() {
+    log.clear();
+    world_.time += options_.step;
+    note_contacts();
+    count();
+    return {};
   }
   void load() { load_bodies(team_, world_, list_.order(), list_.blocks(), sleep_, bodies_); }
 
@@ -155,10 +166,18 @@ class FastMotion<Real, Dim>::Stepper {
     bool is_kept = std::exchange(is_restored_, false);
     const auto list_anew = [&] {
       if (!std::exchange(is_kept, true)) contacts_.keep(team_);
+      exchange_with_resting();
       make_list();
     };
     if (is_other_at_rest_ || list_.is_outdated(bodies_, options_.step)) list_anew();
-    while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step)) list_anew();
+    while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step, options_.sleep_speed)) list_anew();
+  }
+  void exchange_with_resting() {
+    if (sleep_.asleep() == 0 && !contacts_.has_resting()) return;
+    std::vector<std::uint32_t> number_at = list_.order();
+    for (std::size_t k = 0; k < place_before_.size(); ++k) number_at[place_before_[k]] = list_.order()[k];
+    contacts_.exchange_with_resting(number_at,
+                                    [this](std::uint32_t i) { return !sleep_.is_asleep(i) && !world_.is_fixed(i); });
   }
   void make_list() {
     const std::vector<std::uint32_t> earlier = std::move(place_before_);
@@ -200,9 +219,11 @@ class FastMotion<Real, Dim>::Stepper {
            std::ranges::any_of(world_.walls(), is, &Wall<Real, Dim>::material);
   }
 
+  [[nodiscard]] Real substep() const { return options_.step / static_cast<Real>(options_.substeps); }
+
   /// Integrates the substeps. False where the equations of an implicit method could not be solved.
   [[nodiscard]] bool integrate() {
-    const Real h = options_.step / static_cast<Real>(options_.substeps);
+    const Real h = substep();
     log.clear();
     forces_.begin(world_, list_.order());
     torques_.begin(world_, list_.order());
@@ -265,8 +286,8 @@ class FastMotion<Real, Dim>::Stepper {
   }
   void put_to_sleep() {
     if (options_.sleep_after > Real(0))
-      is_other_at_rest_ =
-          sleep_.settle(world_, contacts_, list_.order(), options_.step, options_.sleep_after, options_.sleep_speed);
+      is_other_at_rest_ = sleep_.settle(world_, bodies_, contacts_, list_.order(), options_.step, substep(),
+                                        options_.sleep_after, options_.sleep_speed);
   }
   void count() {
     ++statistics.steps;
