@@ -180,9 +180,9 @@ class LaneSizes {
   void commit() {
     t_ = select(accepted_, end_, t_);
     const Wide tries = steps_ + Wide(rejected_);
-    if (any(active() & (tries >= Wide(max_steps_)))) [[unlikely]]
+    if (any(accepted_ & (tries >= Wide(max_steps_)))) [[unlikely]]
       for (std::size_t lane = 0; lane < W; ++lane)
-        if (is_active(lane) && tries[lane] >= max_steps_) refuse(lane, Ending::too_many_steps, 0);
+        if (accepted_[lane] && tries[lane] >= max_steps_) refuse(lane, Ending::too_many_steps, 0);
   }
 
   // ---- lanes that cannot go on
@@ -219,8 +219,9 @@ class LaneSizes {
       rejected_[lane] += 1;
       const double square = squares[lane];
       const bool finite = square < std::numeric_limits<double>::infinity();
-      const double factor =
-          finite ? ErrorHistory::reject(controller_, error_order, static_cast<float>(std::min(square, 1e30))) : 0.2F;
+      const double factor = finite ? static_cast<double>(ErrorHistory::reject(
+                                         controller_, error_order, static_cast<float>(std::min(square, 1e30))))
+                                   : 0.2;
       const double begin = t_[lane], h = h_[lane] * factor;
       next_.set(lane, h);
       const bool too_many = rejects_[lane] >= max_rejects_;
