@@ -112,6 +112,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
         contact_state_(world, options.contact_time.value_or(usual)),
         stride_(std::max(contact_state_.contact_time, Real(steps_of_contact_time * usual))) {
     together.assign(world.size(), -never);
+    deepest_at_start_ = deepest_overlap(pairs_within(world, Real(0)));
   }
   static Real usual_contact_time_under_forces(const World<Real, Dim>& world, const Companions<Real, Dim>* companions) {
     using std::sqrt;
@@ -173,6 +174,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   MotionEvent impacts(Call& call) {
     if (const auto stop = stops(call)) return *stop;
     list_candidates();
+    if (const Real depth = deepest_overlap(near_now()); has_sunk(depth)) return fail(call, sunk(depth));
     if (!resolved_) resolved_ = resolve();
     if (!resolved_->is_found() && may_step()) {
       resolved_.reset();
@@ -218,6 +220,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     if (!(steps_.fastest() < never))
       return fail(call, cannot_continue(
                             "a body's motion is no longer finite: a speed or a force is too large for the numbers"));
+    if (const Real depth = deepest_overlap(near_.pairs()); has_sunk(depth)) return fail(call, sunk(depth));
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     if (is_steady_) return MotionEvent::nothing_moves;
     return zeno_guard_.is_in_steps() ? MotionEvent::stepped : MotionEvent::steps_made;
@@ -263,9 +266,12 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   PersistentContacts<Real, Dim> resolve() {
     Flow flow(world_, companions_);
     const auto [force, torque] = flow.loads(world_.time);
+    return contact_state_.resolve(near_now(), force, torque, journal());
+  }
+  std::vector<Touching> near_now() const {
     std::vector<Touching> near;
     for (const Candidate<Real>& at : candidates_) near.push_back(at.pair);
-    return contact_state_.resolve(near, force, torque, journal());
+    return near;
   }
   Flow flow_from_here() { return {world_, companions_, *std::exchange(resolved_, std::nullopt)}; }
 
@@ -357,6 +363,28 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   /// Whether forces depend on positions and velocities only.
   bool is_autonomous() const { return !companions_ && world_.force_laws.empty() && world_.torque_laws.empty(); }
 
+  // Overlap.
+
+  /// The deepest overlap among these pairs, in units of the smaller radius.
+  Real deepest_overlap(std::span<const Touching> pairs) const {
+    Real deepest(0);
+    for (const Touching& at : pairs) {
+      const Real smaller = at.with_wall() ? world_.radius[at.a] : std::min(world_.radius[at.a], world_.radius[at.b]);
+      deepest = std::max(deepest, Real(-gap_of(world_, at) / smaller));
+    }
+    return deepest;
+  }
+  /// Contacts are kept to some millionths of a radius. A deeper overlap than this one shows that their impulses were
+  /// not found, and that what follows would be wrong. Bodies that began in each other may have stayed there.
+  bool has_sunk(const Real& depth) const {
+    constexpr Real most = Real(1e-4);
+    return depth > std::max(most, Real(2 * deepest_at_start_));
+  }
+  static Status sunk(const Real& depth) {
+    return cannot_continue("bodies sink into each other, by " + std::to_string(depth) +
+                           " of a radius: the impulses of their contacts cannot be found");
+  }
+
   // Steps through contacts.
 
   /// Whether time steps of first order may be used: not where equations are integrated with the bodies, and not where
@@ -412,6 +440,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   ConstrainedContacts<Real, Dim> contact_state_;
 
   Real step_{}, lasted_ = never;     // step size proposed in the last flight; duration of that flight
+  Real deepest_at_start_{};          // overlap, in units of the smaller radius
   Real stride_{};                    // the length of time steps through contacts
   std::size_t greatest_before_ = 0;  // bodies of the island whose step sizes were taken over
   Real room_ = never;                // a call ends where a body is half as far from begin_
