@@ -85,7 +85,7 @@ struct BodyDefinition {
 /// in the same slot.
 struct BodyHandle {
   std::uint32_t slot = 0;        // a place, used again after its body is removed
-  std::uint32_t generation = 0;  // how often it was
+  std::uint32_t generation = 0;  // counts the bodies that were there, from 1; a handle of nothing has 0
   friend bool operator==(const BodyHandle&, const BodyHandle&) = default;
 };
 

@@ -47,6 +47,7 @@ struct FastStatistics {
   std::size_t colours = 0;   // in the last step
   std::size_t impacts = 0;   // so far
   std::size_t asleep = 0;    // bodies, after the last step
+  double hertz = 0;  // of the contacts in the last step: the one that was asked for, or the limit of the substeps
 };
 
 /// Moves a world in fixed steps.
@@ -64,7 +65,8 @@ class FastMotion {
   /// Leaves the world as it is.
   ~FastMotion();
 
-  /// Advances by one step. On failure the world is as it was before the step.
+  /// Advances by one step. Fails for options or bodies that make no sense. On failure the world is as it was before the
+  /// step.
   [[nodiscard]] Status advance();
   /// Starts anew from the present state of the world, with all bodies awake.
   void refresh();

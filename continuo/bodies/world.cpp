@@ -50,6 +50,25 @@ Status check(const Material<Real>& material) {
 }
 
 template <class Real, int Dim>
+Status check_bodies(const World<Real, Dim>& world) {
+  const std::size_t n = world.size();
+  for (const std::size_t size : {world.velocity.size(), world.constant_force.size(), world.orientation.size(),
+                                 world.spin.size(), world.radius.size(), world.mass.size(), world.inverse_mass.size(),
+                                 world.inverse_inertia.size(), world.material.size()})
+    if (size != n)
+      return invalid_input("the fields of the bodies have different lengths: `add` and `remove` change all");
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto of = [i](const char* what) { return std::string(what) + " of body " + std::to_string(i); };
+    if (!is_positive(world.radius[i])) return invalid_input(of("the radius") + " must be greater than 0, and finite");
+    if (!is_positive(world.mass[i])) return invalid_input(of("the mass") + " must be greater than 0, and finite");
+    const Real product = world.mass[i] * world.inverse_mass[i];
+    if (world.inverse_mass[i] != Real(0) && !(product > Real(0.999) && product < Real(1.001)))
+      return invalid_input(of("inverse_mass") + " must be 1 / mass, or 0 if the body is fixed");
+  }
+  return {};
+}
+
+template <class Real, int Dim>
 Result<BodyHandle> World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
   if (Status fault = check(definition); !fault) return fault;
   const auto& sphere = std::get<Sphere<Real>>(definition.shape);
@@ -193,6 +212,10 @@ template class World<float, 3>;
 template class World<double, 2>;
 template class World<double, 3>;
 
+template Status check_bodies(const World<float, 2>&);
+template Status check_bodies(const World<float, 3>&);
+template Status check_bodies(const World<double, 2>&);
+template Status check_bodies(const World<double, 3>&);
 template float kinetic_energy(const World<float, 2>&);
 template float kinetic_energy(const World<float, 3>&);
 template double kinetic_energy(const World<double, 2>&);

@@ -149,10 +149,12 @@ class World {
   /// All walls, in the order in which they were added.
   [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
-  /// From now on, bodies of groups a and b do not collide.
-  void ignore(std::uint32_t a, std::uint32_t b) {
+  /// From now on, bodies of groups a and b do not collide. Fails for a group that does not exist.
+  [[nodiscard]] Status ignore(std::uint32_t a, std::uint32_t b) {
+    if (a >= ignored_.size() || b >= ignored_.size()) return invalid_input("groups are numbered from 0 to 31");
     ignored_[a] |= 1u << b;
     ignored_[b] |= 1u << a;
+    return {};
   }
   /// The group of body i, below 32.
   [[nodiscard]] std::uint32_t group(std::size_t i) const { return group_[i]; }
@@ -189,10 +191,14 @@ class World {
   std::vector<Real> inverse_inertia;     // 0 of fixed bodies
   std::vector<Material<Real>> material;  // of surfaces
 
-  /// The centre of a body, which the world must contain.
-  [[nodiscard]] const V& position_of(BodyHandle body) const { return position[index(body)]; }
-  /// The velocity of a body, which the world must contain.
-  [[nodiscard]] const V& velocity_of(BodyHandle body) const { return velocity[index(body)]; }
+  /// The centre of a body; not a number where the world has no such body.
+  [[nodiscard]] V position_of(BodyHandle body) const {
+    return contains(body) ? position[index(body)] : nowhere_at_all();
+  }
+  /// The velocity of a body; not a number where the world has no such body.
+  [[nodiscard]] V velocity_of(BodyHandle body) const {
+    return contains(body) ? velocity[index(body)] : nowhere_at_all();
+  }
   /// Whether body i is fixed.
   [[nodiscard]] bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
@@ -200,8 +206,13 @@ class World {
   friend struct SnapshotAccess;  // snapshots/snapshot_members.hpp
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   struct Slot {
-    std::uint32_t index = nowhere, generation = 0;
+    std::uint32_t index = nowhere, generation = 1;  // so that a handle of nothing, {}, is never valid
   };
+  [[nodiscard]] static V nowhere_at_all() {
+    V x;
+    x.components.fill(std::numeric_limits<Real>::quiet_NaN());
+    return x;
+  }
   template <class Self, class Act>
   static void for_each_array(Self& self, Act&& act) {
     act(self.position), act(self.velocity), act(self.constant_force), act(self.orientation), act(self.spin),
@@ -215,6 +226,11 @@ class World {
   std::vector<Wall<Real, Dim>> walls_;
   std::array<std::uint32_t, 32> ignored_{};
 };
+
+/// Fails where the fields of a world contradict each other: a radius or a mass that is not above 0, an inverse mass
+/// that is neither 0 nor that of the mass, arrays of different lengths. Both motions ask before they move. O(bodies).
+template <class Real, int Dim>
+[[nodiscard]] Status check_bodies(const World<Real, Dim>& world);
 
 /// Sums over all bodies that move. Angular momentum is about the origin, spin included.
 template <class Real, int Dim>

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <continuo/language/text/words.hpp>
+#include <continuo/status/require.hpp>
 #include <continuo/worlds/build_world.hpp>
 
 namespace continuo::worlds {
@@ -139,7 +140,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
   world.combine_rule = {.restitution = combination(text.combine_rule.restitution),
                         .friction = combination(text.combine_rule.friction),
                         .rolling_resistance = combination(text.combine_rule.rolling)};
-  for (const auto& [a, b] : text.ignored) world.ignore(a, b);
+  for (const auto& [a, b] : text.ignored) require(world.ignore(a, b));  // the language has counted the groups
   return built;
 }
 

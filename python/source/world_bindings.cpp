@@ -33,12 +33,12 @@ void raise_unless(const Status& status) {
   throw std::runtime_error(describe(status));
 }
 
-/// A handle is one number in Python.
+/// A handle is one number in Python: its slot for the first body there, which has the generation 1.
 std::uint64_t number_of(BodyHandle handle) {
-  return (static_cast<std::uint64_t>(handle.generation) << 32u) | handle.slot;
+  return (static_cast<std::uint64_t>(handle.generation - 1) << 32u) | handle.slot;
 }
 BodyHandle handle_of(std::uint64_t number) {
-  return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32u)};
+  return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32u) + 1};
 }
 
 /// While Python waits for a move, Ctrl-C sets the interrupt of the world that is moved; Python's own handler is called
@@ -353,7 +353,8 @@ void bind(py::module_& module, const char* name) {
            [](const P& m, double linear, double quadratic) { B::idle(m).forces().drag = {linear, quadratic}; })
       .def("set_attraction", [](const P& m, double constant, double softening,
                                 double opening) { B::idle(m).forces().attraction = {constant, softening, opening}; })
-      .def("ignore", [](const P& m, std::uint32_t a, std::uint32_t b) { B::idle(m).forces().ignore(a, b); })
+      .def("ignore",
+           [](const P& m, std::uint32_t a, std::uint32_t b) { raise_unless(B::idle(m).forces().ignore(a, b)); })
       .def("advance_to", [](const P& m, double t) { B::move(m, [t](M& moving) { return moving.advance_to(t); }); })
       .def("advance",
            [](const P& m, std::size_t steps) { B::move(m, [steps](M& moving) { return moving.advance(steps); }); })

@@ -74,7 +74,9 @@ World<Real, Dim> random_world(Numbers<Real>& numbers, std::size_t& refused) {
     body.group = static_cast<std::uint32_t>(numbers.below(3));
     refused += world.add(body) ? 0 : 1;
   }
-  if (numbers.one_in(3)) world.ignore(0, 1);
+  if (numbers.one_in(3)) {
+    EXPECT_TRUE(world.ignore(0, 1));
+  }
   if (numbers.one_in(8)) world.drag.linear = numbers.positive();
   if (numbers.one_in(8)) world.attraction.constant = numbers.positive();
   if (numbers.one_in(8) && world.size() > 1)

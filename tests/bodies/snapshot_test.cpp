@@ -43,7 +43,7 @@ World<Real, Dim> crowd(unsigned seed, bool has_springs) {
     if (has_springs && i == 30) world.springs.push_back({.a = *added, .b = upper, .stiffness = 2, .damping = 1});
     last = *added;
   }
-  world.ignore(2, 3);
+  EXPECT_TRUE(world.ignore(2, 3));
   world.combine_rule = {.restitution = Combine::average, .rolling_resistance = Combine::product};
   return world;
 }

@@ -42,6 +42,11 @@ template <class Real, int Dim>
 Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (!(t >= world_->time) || !(t - t == Real(0)))
     return invalid_input("the time to advance to must be finite and not before the present");
+  if (!(options_.tolerance > Real(0)) || !(options_.step >= Real(0)))
+    return invalid_input("the tolerance must be greater than 0, and the step 0 or more");
+  if (options_.contact_time && !(*options_.contact_time >= Real(0)))
+    return invalid_input("contact_time must be 0 or more");
+  if (Status fault = check_bodies(*world_); !fault) return fault;
   if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
   return engine_->advance_to(t);
