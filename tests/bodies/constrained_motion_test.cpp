@@ -1,4 +1,5 @@
 // Exact collisions under forces whose paths are no parabolas, against closed forms and against the motion on parabolas.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -106,6 +107,37 @@ TEST(ConstrainedMotion, GoesOnFromASnapshotToTheSameBits) {
   ASSERT_TRUE(motion_again.advance_to(1));
   EXPECT_EQ(snapshot(world, motion), snapshot(again, motion_again));
   EXPECT_GT(motion.statistics().collisions, 2u);
+}
+
+// A heavy disc on a row of light ones: it lies on them, or the run says that it cannot go on. A disc of 10,000 times
+// their mass sank by 0.2 in a minute before.
+TEST(ConstrainedMotion, AHeavyDiscDoesNotSinkInSilence) {
+  for (const double mass : {1e3, 1e4, 1e7}) {
+    World<double, 2> world;
+    world.gravity = {{0, -9.81}};
+    const Material<double> rough{.friction = 0.3};
+    ASSERT_TRUE(world.add_container({{-3.2, 0}}, {{3.2, 40}}, rough));
+    for (int i = 0; i < 6; ++i)
+      ASSERT_TRUE(world.add({.position = {{-2.6 + 1.04 * i, 0.5}}, .mass = 1, .material = rough}));
+    ASSERT_TRUE(world.add({.shape = Sphere<double>{1}, .position = {{0.1, 2.3}}, .mass = mass, .material = rough}));
+    ExactMotion motion(world);
+    Status status;
+    for (int k = 1; k <= 8 && status; ++k) {
+      status = motion.advance_to(0.25 * k);
+      double deepest = 0;
+      for (std::size_t i = 0; i < world.size(); ++i)
+        for (std::size_t j = i + 1; j < world.size(); ++j)
+          deepest =
+              std::max(deepest, world.radius[i] + world.radius[j] - length(world.position[i] - world.position[j]));
+      EXPECT_LT(deepest, status ? 1e-4 : 1e-2) << mass;
+    }
+    if (mass < 1e5) {
+      EXPECT_TRUE(status) << status.message;
+    }
+    if (!status) {
+      EXPECT_NE(status.message.find("sink into each other"), std::string::npos);
+    }
+  }
 }
 
 }  // namespace
