@@ -13,6 +13,7 @@ packages_to_build=(
   "libxsimd-dev           -            vector instructions"
   "libsuitesparse-dev     -            sparse linear systems"
   "libtbb-dev             -            threads"
+  "libqhull-dev           -            convex hulls"
   "libeigen3-dev          -            eigenvalues of matrices"
   "libceres-dev           -            least squares, and dual numbers"
   "zlib1g-dev             -            the page of the live view, compressed"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include <continuo/bodies/support/vector.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/support/vector.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

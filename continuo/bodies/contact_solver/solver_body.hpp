@@ -9,8 +9,8 @@
 #include <continuo/bodies/contact_solver/contact_blocks.hpp>
 #include <continuo/bodies/contact_solver/disturbances.hpp>
 #include <continuo/bodies/support/large_array.hpp>
-#include <continuo/bodies/support/vector.hpp>
 #include <continuo/numerics/lanes.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

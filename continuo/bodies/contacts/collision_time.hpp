@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <limits>
 
-#include <continuo/bodies/support/vector.hpp>
 #include <continuo/numerics/bernstein.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <continuo/bodies/support/short_lists.hpp>
-#include <continuo/bodies/support/vector.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/support/vector.hpp>
+#include <continuo/numerics/vector.hpp>
 #include <continuo/status/status.hpp>
 
 namespace continuo {

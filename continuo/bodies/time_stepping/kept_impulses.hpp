@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/support/vector.hpp>
 #include <continuo/bodies/time_stepping/contact_rows.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/support/vector.hpp>
+#include <continuo/numerics/vector.hpp>
 
 namespace continuo {
 
