@@ -2,7 +2,8 @@
 # Builds the command, the library and the tests, and runs the tests; the last lines are ctest's own summary.
 #
 #   ./test.sh                 unit tests, models, documentation, page, installation, format
-#   ./test.sh --all           also the long tests: the second compiler with sanitizers, fuzzing, large inputs, long runs
+#   ./test.sh --sanitized     also those under the second compiler with sanitizers, and fuzzing
+#   ./test.sh --all           also the long tests: large inputs, long runs
 #   ./test.sh -R architecture the tests whose name matches; arguments go to ctest
 #
 # If no file and no compiler has changed since the tests passed, `./test.sh` repeats only those that take a minute together.
@@ -19,8 +20,8 @@ state_of_checkout() {
 }
 
 all=
-if [[ ${1-} == --all ]]; then
-  all=yes
+if [[ ${1-} == --all || ${1-} == --sanitized ]]; then
+  all=$1
   shift
 fi
 setup_packages test
@@ -40,9 +41,10 @@ if [[ -z $all && -n $state && -e build/.tested && $(<build/.tested) == "$state" 
   exec "${tests[@]}" -R '^(architecture|boundary|docs|gallery|language|numerics|results|runs|solve|status|symbolic|system|worlds)'
 fi
 rm -f build/.tested
-if [[ -z $all ]]; then
+if [[ $all != --all ]]; then
   say "without the long tests (all of them: ./test.sh --all)"
-  tests+=(--label-exclude long --exclude-regex "$(<build/long_tests.txt)")
+  tests+=(--exclude-regex "$(<build/long_tests.txt)")
 fi
+if [[ -z $all ]]; then tests+=(--label-exclude long); fi
 "${tests[@]}"
 printf '%s\n' "$state" >build/.tested
