@@ -132,6 +132,25 @@ def least_time(
             return least, result
 
 
+def print_calls(native: _continuo.Native, y0: Vector) -> None:
+    """Print what one call of a few steps takes, by the kind of f."""
+    in_c = native.owner.lorenz
+    pointer = ctypes.POINTER(ctypes.c_double)
+    in_c.restype, in_c.argtypes = None, [ctypes.c_double, pointer, pointer, ctypes.c_void_p]
+    kinds = {
+        "in C": native,
+        "a LowLevelCallable": scipy.LowLevelCallable(in_c, signature="void (double, double *, double *, void *)"),
+        "of ctypes": in_c,
+        "traced": continuo.trace(lorenz, 3),
+        "a text": continuo.expression("x' = 10*(y - x); y' = x*(28 - z) - y; z' = x*y - 8/3*z"),
+    }
+    steps = len(continuo.solve_ivp(native, (0, 0.3), y0).t) - 1
+    for kind, f in kinds.items():
+        call = lambda f=f: [continuo.solve_ivp(f, (0, 0.3), y0) for _ in range(100)]  # noqa: E731
+        times = sorted(least_time(call, 0.0)[0] for _ in range(200))
+        print(f"one call with f {kind} and {steps} steps: {times[100] * 1e4:.1f} us, at least {times[0] * 1e4:.1f}")
+
+
 def main() -> None:
     """Print the table."""
     native = compiled(pathlib.Path(tempfile.mkdtemp()))
@@ -168,9 +187,7 @@ def main() -> None:
                     f" {scipys_time / ours_time:6.1f}  {errors[0]:.1e} {errors[1]:.1e}"
                 )
     y0 = np.array([1.0, 1.0, 1.0])
-    call = lambda: [continuo.solve_ivp(native["lorenz"], (0, 0.3), y0) for _ in range(100)]  # noqa: E731
-    steps = len(continuo.solve_ivp(native["lorenz"], (0, 0.3), y0).t) - 1
-    print(f"one call with f in C and {steps} steps: {least_time(call)[0] * 1e4:.1f} us")
+    print_calls(native["lorenz"], y0)
 
     def solves(count: int) -> None:
         for _ in range(count):

@@ -200,6 +200,20 @@ class Run:
     @property
     def native(self) -> bool: ...
 
+def run_to_end(
+    fun: object,
+    t0: float,
+    t1: float,
+    y0: Array,
+    method: str,
+    rtol: float | Array,
+    atol: float | Array,
+    max_step: float,
+    times: Array | None,
+    dense: bool,
+    args: tuple[Any, ...] | None,
+    extras: dict[str, Any],
+) -> tuple[Run | None, BaseException | None, tuple[int, str, str, int, int, int, str, int, int], Array, Array]: ...
 def solve_bvp(
     fun: Any,
     bc: Callable[..., ArrayLike],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Callable, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _continuo
 from .dense import OdeSolution
 from .errors import Interrupted
-from .options import PatternGrew, begin_run, method_of, state_of, warn_extraneous
+from .options import PatternGrew, method_of, run_settings, state_of, warn_extraneous
 from .result import OdeResult
 
 Array = npt.NDArray[Any]
@@ -28,14 +28,14 @@ def _times(t_eval: Any, t0: float, t1: float) -> Array:
     return times
 
 
-def result_of(run: _continuo.Run, dense: bool, with_events: bool) -> OdeResult:
-    """Give what a run has computed so far."""
-    status, message, outcome, nfev, njev, nlu, ending, _, _ = run.summary()
+def _result(ended: tuple[Any, ...], dense: bool, with_events: bool) -> OdeResult:
+    """Give what `_continuo.run_to_end` has computed."""
+    run, _, (status, message, outcome, nfev, njev, nlu, ending, _, _), times, states = ended
     if ending == "invalid input":
         raise ValueError(outcome)
     result = OdeResult(
-        t=run.times(),
-        y=run.states(),
+        t=times,
+        y=states,
         sol=OdeSolution._of(run.dense()) if dense else None,
         t_events=None,
         y_events=None,
@@ -57,15 +57,16 @@ def result_of(run: _continuo.Run, dense: bool, with_events: bool) -> OdeResult:
     return result
 
 
-def _raise(error: BaseException, run: _continuo.Run, dense: bool, with_events: bool) -> None:
-    result = result_of(run, dense, with_events)
+def _raise(ended: tuple[Any, ...], dense: bool, with_events: bool) -> NoReturn:
+    run, error, *_ = ended
+    result = _result(ended, dense, with_events)
     result.update(status=-1, success=False)
     if isinstance(error, KeyboardInterrupt):
         result["message"] = result["outcome"] = f"interrupted at t = {run.t:.6g}"
         raise Interrupted(result["message"], result) from error
     result["message"] = result["outcome"] = f"{type(error).__name__} at t = {run.t:.6g}: {error}"
     try:
-        error.result = result  # type: ignore[attr-defined]  # an attribute that is not declared
+        error.result = result  # an attribute that is not declared
     except AttributeError:
         pass  # an exception with slots
     raise error
@@ -81,17 +82,16 @@ def _unpacked(args: Any) -> tuple[Any, ...]:
 
 
 def _run_with_pattern(
-    grown: PatternGrew, begin: Callable[[tuple[Array, Array]], _continuo.Run]
-) -> tuple[_continuo.Run, BaseException | None]:
+    grown: PatternGrew, run: Callable[[tuple[Array, Array]], tuple[Any, ...]]
+) -> tuple[Any, ...]:
     """Run once more from the beginning, with the entries that a sparse Jacobian turned out to have, until it has all."""
     rows, columns = grown.places
     while True:
-        run = begin((rows, columns))
-        error = run.run()
-        if not isinstance(error, PatternGrew):
-            return run, error
-        rows = np.concatenate([rows, error.places[0]])
-        columns = np.concatenate([columns, error.places[1]])
+        ended = run((rows, columns))
+        if not isinstance(ended[1], PatternGrew):
+            return ended
+        rows = np.concatenate([rows, ended[1].places[0]])
+        columns = np.concatenate([columns, ended[1].places[1]])
 
 
 def solve_ivp(
@@ -181,7 +181,8 @@ def solve_ivp(
     Exception
         What a callback raises, with `result` as an attribute.
     """
-    t0, t1 = map(float, t_span)
+    t0, t1 = t_span
+    t0, t1 = float(t0), float(t1)
     chosen = method_of(method)
     if options and not chosen.options.issuperset(options):
         warn_extraneous(options, chosen)
@@ -190,11 +191,12 @@ def solve_ivp(
         args = _unpacked(args)
     times = None if t_eval is None else _times(t_eval, t0, t1)
     settings = (fun, t0, t1, y, chosen, options, times, dense_output, events, vectorized, args)
-    run = begin_run(*settings)
-    error = run.run()
-    if error is not None:
-        if isinstance(error, PatternGrew):
-            run, error = _run_with_pattern(error, lambda places: begin_run(*settings, places))
-        if error is not None:
-            _raise(error, run, dense_output, events is not None)
-    return result_of(run, dense_output, events is not None)
+    ended: tuple[Any, ...] = _continuo.run_to_end(*run_settings(*settings))
+    if ended[1] is not None:
+        if isinstance(ended[1], PatternGrew):
+            ended = _run_with_pattern(
+                ended[1], lambda places: _continuo.run_to_end(*run_settings(*settings, places))
+            )
+        if ended[1] is not None:
+            _raise(ended, dense_output, events is not None)
+    return _result(ended, dense_output, events is not None)

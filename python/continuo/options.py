@@ -18,6 +18,7 @@ Array = npt.NDArray[Any]
 
 EPS = float(np.finfo(float).eps)
 LEAST_RTOL = 100 * EPS
+_FLOAT = np.dtype(float)
 # From here on a sparse Jacobian is kept sparse; below, a dense one is solved faster.
 LEAST_SPARSE_SIZE = 20
 # A run without an end goes on to here: far enough, and the difference of two such times is finite.
@@ -104,6 +105,8 @@ def state_of(y0: Any) -> Array:
     y = np.asarray(y0)
     if y.ndim != 1:
         raise ValueError("`y0` must be 1-dimensional.")
+    if y.dtype is _FLOAT and y.flags.c_contiguous:  # as most are: a call of a few steps takes little longer
+        return y
     if y.dtype.kind not in "biufcO":
         raise TypeError(f"`y0` must consist of numbers, and is an array of {y.dtype}")
     return np.ascontiguousarray(y, dtype=complex if y.dtype.kind == "c" else float)
@@ -375,7 +378,7 @@ def _own_pattern(fun: RightHandSide, n: int, y: Array, extras: dict[str, Any]) -
         extras.update(pattern=fun.jacobian_pattern(), pattern_is_native=True)
 
 
-def begin_run(
+def run_settings(
     fun: Any,
     t0: float,
     t1: float,
@@ -388,8 +391,8 @@ def begin_run(
     vectorized: bool = False,
     args: Any = None,
     grown: tuple[Array, Array] | None = None,
-) -> _continuo.Run:
-    """Begin a run of these settings, all of them checked."""
+) -> tuple[Any, ...]:
+    """What `_continuo.Run` begins with, all of it checked."""
     fun = with_equations(fun)
     n = len(y)
     extras: dict[str, Any] = {}
@@ -416,4 +419,9 @@ def begin_run(
         )
     if math.isinf(t1):
         t1 = math.copysign(FAR, t1)
-    return _continuo.Run(fun, t0, t1, y, name, rtol, atol, max_step, times, dense, args, extras)
+    return fun, t0, t1, y, name, rtol, atol, max_step, times, dense, args, extras
+
+
+def begin_run(*settings: Any, **more: Any) -> _continuo.Run:
+    """Begin a run of the settings that `run_settings` takes."""
+    return _continuo.Run(*run_settings(*settings, **more))

@@ -169,7 +169,7 @@ class RightHandSide:
     def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
         """The compiled functions for the solvers, with the parameters as they are now, or with these."""
         if args:
-            return _native_of(self._with(tuple(args)))
+            return _native_of(self._with(self._in_order(tuple(args), {})))
         if self._native is None:
             self._native = _native_of(self._compiled)
         return self._native
@@ -199,6 +199,10 @@ class RightHandSide:
         self._compiled = self._base.with_parameters(settings)
         self._native = None
         self._settings = settings
+
+    def _in_order(self, args: tuple[Any, ...], options: Mapping[str, Any]) -> tuple[Any, ...]:
+        """Arguments of a call as values of all parameters."""
+        return args
 
     def _with(self, args: tuple[Any, ...]) -> _continuo.RightHandSide:
         if not args:

@@ -178,11 +178,6 @@ class Traced(RightHandSide):
                 raise TypeError(f"f was traced without an argument {name!r}")
         return tuple(given.get(name, self._parameter(name)) for name in self._places)
 
-    def __continuo_native__(self, args: Sequence[Any] = ()) -> _continuo.Native:
-        """The compiled functions for the solvers, with the parameters as they are now, or with these
-        arguments."""
-        return super().__continuo_native__(self._in_order(tuple(args), {}) if args else ())
-
     def _parameter_names(self) -> list[str]:
         return list(self._places)
 

@@ -70,18 +70,23 @@ template <class Function>
   return address;
 }
 
-[[nodiscard]] Native of_ctypes(py::handle f, void* user) {
+// By its name: to import a module of Python in every call takes longer than a step.
+[[nodiscard]] bool is_type(py::handle type, std::string_view name) {
+  return PyType_Check(type.ptr()) && reinterpret_cast<PyTypeObject*>(type.ptr())->tp_name == name;
+}
+
+[[nodiscard]] Native of_ctypes(py::handle f) {
   const py::object types = f.attr("argtypes");
   if (types.is_none())
     throw py::type_error(
         "the ctypes function has no argtypes: set `f.argtypes = [c_double, POINTER(c_double), POINTER(c_double), "
         "c_void_p]` and `f.restype = None`");
   const std::size_t arguments = py::len(types);
-  const py::module_ ctypes = py::module_::import("ctypes");
-  const py::object number = ctypes.attr("c_double");
-  const bool first = arguments > 0 && types[py::int_(0)].ptr() == number.ptr();
-  if (!first || (arguments != 3 && arguments != 4)) refuse("of ctypes", py::str(types).cast<std::string>());
-  Native native = native_at(address_of_ctypes(f), arguments, user, f);
+  const auto first = py::reinterpret_steal<py::object>(arguments == 0 ? nullptr : PySequence_GetItem(types.ptr(), 0));
+  if (arguments > 0 && !first) throw py::error_already_set();
+  if (!first || !is_type(first, "c_double") || (arguments != 3 && arguments != 4))
+    refuse("of ctypes", py::str(types).cast<std::string>());
+  Native native = native_at(address_of_ctypes(f), arguments, nullptr, f);
   native.may_write_nothing = true;
   return native;
 }
@@ -110,15 +115,27 @@ template <class Function>
 }
 
 [[nodiscard]] bool has_base(PyTypeObject* type, std::string_view name, std::string_view module) {
-  const py::handle bases(type->tp_mro);
-  for (const py::handle base : bases) {
-    const auto* of = reinterpret_cast<PyTypeObject*>(base.ptr());
-    if (std::string_view(of->tp_name) != name && !std::string_view(of->tp_name).ends_with("." + std::string(name)))
-      continue;
-    if (!py::hasattr(base, "__module__")) continue;
-    if (py::str(base.attr("__module__")).cast<std::string>().starts_with(module)) return true;
+  for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(type->tp_mro); ++i) {
+    const py::handle base(PyTuple_GET_ITEM(type->tp_mro, i));
+    const std::string_view full = reinterpret_cast<PyTypeObject*>(base.ptr())->tp_name;
+    if (full.substr(full.rfind('.') + 1) != name) continue;  // all of it where there is no dot
+    if (const py::object in = py::getattr(base, "__module__", py::none());
+        py::isinstance<py::str>(in) && in.cast<std::string>().starts_with(module))
+      return true;
   }
   return false;
+}
+
+[[nodiscard]] Native of_protocol(py::handle f, const py::object& make, py::handle arguments) {
+  const bool has_arguments = !arguments.is_none() && py::len(arguments) > 0;
+  const py::object given = has_arguments ? make(arguments) : make();
+  if (!py::isinstance<Native>(given))
+    throw py::type_error("__continuo_native__ gave a " + std::string(Py_TYPE(given.ptr())->tp_name) +
+                         ", and must give a continuo._continuo.Native");
+  Native native = given.cast<Native>();
+  native.owner = py::make_tuple(f, given);
+  native.has_arguments = has_arguments;
+  return native;
 }
 
 }  // namespace
@@ -130,21 +147,12 @@ std::optional<Native> native_of(py::handle f, py::handle arguments) {
     native.owner = py::reinterpret_borrow<py::object>(f);
     return native;
   }
-  if (py::hasattr(f, "__continuo_native__") && !PyType_Check(f.ptr())) {
-    const bool has_arguments = !arguments.is_none() && py::len(arguments) > 0;
-    const py::object make = f.attr("__continuo_native__");
-    const py::object given = has_arguments ? make(arguments) : make();
-    if (!py::isinstance<Native>(given))
-      throw py::type_error("__continuo_native__ gave a " + std::string(Py_TYPE(given.ptr())->tp_name) +
-                           ", and must give a continuo._continuo.Native");
-    Native native = given.cast<Native>();
-    native.owner = py::make_tuple(f, given);
-    native.has_arguments = has_arguments;
-    return native;
-  }
   if (PyTuple_Check(f.ptr()) && has_base(Py_TYPE(f.ptr()), "LowLevelCallable", "scipy"))
     return of_low_level_callable(f);
-  if (has_base(Py_TYPE(f.ptr()), "CFuncPtr", "_ctypes")) return of_ctypes(f, nullptr);
+  if (has_base(Py_TYPE(f.ptr()), "CFuncPtr", "_ctypes")) return of_ctypes(f);
+  if (const py::object make = py::getattr(f, "__continuo_native__", py::none());
+      !make.is_none() && !PyType_Check(f.ptr()))
+    return of_protocol(f, make, arguments);
   if (py::hasattr(f, "address") && py::hasattr(f, "native_name")) return of_numba(f);
   return {};
 }

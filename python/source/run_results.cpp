@@ -31,8 +31,8 @@ py::array Run::numbers(const double* from, std::size_t rows, bool components_fir
   const auto item = static_cast<py::ssize_t>(complex ? sizeof(std::complex<double>) : sizeof(double));
   std::vector<py::ssize_t> shape = {m, n}, strides = {n * item, item};
   if (components_first) shape = {n, m}, strides = {item, n * item};
-  py::array result = complex ? py::array(py::array_t<std::complex<double>>(shape, strides))
-                             : py::array(py::array_t<double>(shape, strides));
+  py::array result = complex ? py::array(py::array_t<std::complex<double>>(std::move(shape), std::move(strides)))
+                             : py::array(py::array_t<double>(std::move(shape), std::move(strides)));
   if (rows * size > 0) std::memcpy(result.mutable_data(), from, rows * size * sizeof(double));
   return result;
 }
@@ -187,6 +187,19 @@ namespace {
   return std::make_unique<Run>(fun, y0, std::move(settings), extras);
 }
 
+// One call in place of five, and no object for a Run of which nothing more is asked: a fifth of a short run.
+[[nodiscard]] py::tuple run_to_end(const py::object& fun, double t0, double t1, const py::array& y0,
+                                   const std::string& method, const py::object& rtol, const py::object& atol,
+                                   double max_step, const py::object& times, bool dense, const py::object& arguments,
+                                   const py::dict& extras) {
+  std::unique_ptr<Run> run = make_run(fun, t0, t1, y0, method, rtol, atol, max_step, times, dense, arguments, extras);
+  const py::object error = run->run();
+  const py::tuple summary = run->summary();
+  const py::array reached = run->times(), states = run->states();
+  const bool ends_here = error.is_none() && !dense && !extras.contains("events");
+  return py::make_tuple(ends_here ? py::none() : py::cast(std::move(run)), error, summary, reached, states);
+}
+
 [[nodiscard]] py::list methods() {
   py::list list;
   for (const MethodInfo& info : method_catalogue())
@@ -221,6 +234,10 @@ void add_run(py::module_& module) {
       .def_property_readonly("t", &Run::t)
       .def_property_readonly("y", &Run::y)
       .def_property_readonly("native", &Run::native);
+  module.def("run_to_end", &continuo::python::run_to_end, py::arg("fun"), py::arg("t0"), py::arg("t1"), py::arg("y0"),
+             py::arg("method"), py::arg("rtol"), py::arg("atol"), py::arg("max_step"), py::arg("times"),
+             py::arg("dense"), py::arg("args"), py::arg("extras"),
+             "A Run to its end: (the Run where it has more to tell, or None, its error, summary, times, states).");
   module.def("methods", &continuo::python::methods,
              "The methods by name: (name, order, order of the error estimate, for x'' = a alone, implicit).");
   module.def(
