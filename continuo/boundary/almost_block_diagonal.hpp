@@ -55,17 +55,23 @@ class AlmostBlockDiagonal {
   [[nodiscard]] std::size_t size() const {
     return N == run_time_size ? n_ : N;
   }
-  template <std::size_t N>
+  template <std::size_t K>
+  [[nodiscard]] std::size_t parameters() const {
+    return K == run_time_size ? k_ : K;
+  }
+  template <std::size_t N, std::size_t K>
   void scale_rows(std::size_t interval);
-  template <std::size_t N>
+  template <std::size_t N, std::size_t K>
   void stack(std::size_t interval);
-  template <std::size_t N>
+  template <std::size_t N, std::size_t K>
+  void reflect_columns(Number* a, std::size_t c, double factor);
+  template <std::size_t N, std::size_t K>
   bool reflect(std::size_t interval);
-  template <std::size_t N>
+  template <std::size_t N, std::size_t K>
   bool eliminate();
-  template <std::size_t N>
+  template <std::size_t N, std::size_t K>
   void carry_right_side(std::span<Number> b) const;
-  template <std::size_t N>
+  template <std::size_t N, std::size_t K>
   void substitute(std::span<Number> b) const;
   bool factor_end();
 
