@@ -40,9 +40,8 @@ struct TwoPointProblem {
   std::function<void(Numbers y_first, Numbers y_last, Numbers p, std::span<Number> first, std::span<Number> last,
                      std::span<Number> of_parameters)>
       condition_jacobian{};
-  /// S, n x n, or empty; then `first_value` is I - S^+ S, to whose range y(a) belongs, and `first_derivative` is
-  /// (I - S)^+, by which f(a) is multiplied to give y'(a).
-  std::vector<Number> singular_term{}, first_value{}, first_derivative{};
+  /// S, n x n, or empty. Then S y(a) = 0: y(a) is made one of the range of I - S^+ S, and y'(a) = (I - S)^+ f(a).
+  std::vector<Number> singular_term{};
 };
 
 /// What was reached on one mesh.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <continuo/boundary/number_size.hpp>
+#include <continuo/boundary/singular_values.hpp>
 #include <continuo/boundary/two_point_functions.hpp>
 
 namespace continuo::boundary {
@@ -39,13 +40,24 @@ void multiply(const std::vector<Number>& matrix, std::span<Number> x, std::size_
 
 }  // namespace
 
+template <class Number>
+TwoPointFunctions<Number>::TwoPointFunctions(const TwoPointProblem<Number>& problem, double start)
+    : problem_(problem), start_(start) {
+  const std::vector<Number>& term = problem.singular_term;
+  if (term.empty()) return;
+  first_value_ = SingularValues<Number>(term, size()).null_projector();
+  std::vector<Number> rest(term.size());
+  for (std::size_t e = 0; e < term.size(); ++e) rest[e] = Number(e % (size() + 1) == 0 ? 1.0 : 0.0) - term[e];
+  first_derivative_ = SingularValues<Number>(rest, size()).pseudo_inverse();
+}
+
 /// S y / (x - a) is added, in the order of the components; at a the slope is (I - S)^+ f.
 template <class Number>
 void TwoPointFunctions<Number>::add_singular_term(std::span<const double> x, Numbers y, std::span<Number> f) const {
   const std::size_t n = size(), count = x.size();
   for (std::size_t q = 0; q < count; ++q) {
     if (x[q] == start_) {
-      multiply(problem_.first_derivative, f.subspan(q, (n - 1) * count + 1), count);
+      multiply(first_derivative_, f.subspan(q, (n - 1) * count + 1), count);
       continue;
     }
     const double factor = 1 / (x[q] - start_);
@@ -181,8 +193,8 @@ void TwoPointFunctions<Number>::given_jacobians(std::span<const double> x, Numbe
     const auto block = std::span(result.by_y).subspan(q * n * n, n * n);
     const auto border = std::span(result.by_p).subspan(q * n * k, n * k);
     if (x[q] == start_) {
-      for (std::size_t j = 0; j < n; ++j) multiply(problem_.first_derivative, block.subspan(j, n * n - n + 1), n);
-      for (std::size_t l = 0; l < k; ++l) multiply(problem_.first_derivative, border.subspan(l, n * k - k + 1), k);
+      for (std::size_t j = 0; j < n; ++j) multiply(first_derivative_, block.subspan(j, n * n - n + 1), n);
+      for (std::size_t l = 0; l < k; ++l) multiply(first_derivative_, border.subspan(l, n * k - k + 1), k);
       continue;
     }
     const double factor = 1 / (x[q] - start_);
@@ -272,7 +284,7 @@ const ConditionJacobians<Number>& TwoPointFunctions<Number>::condition_jacobians
 
 template <class Number>
 void TwoPointFunctions<Number>::restrict_first(std::span<Number> y_first) const {
-  if (!problem_.first_value.empty()) multiply(problem_.first_value, y_first);
+  if (!first_value_.empty()) multiply(first_value_, y_first);
 }
 
 template class TwoPointFunctions<double>;

@@ -28,7 +28,7 @@ template <class Number>
 class TwoPointFunctions {
  public:
   /// `start` is a, where the singular term is.
-  TwoPointFunctions(const TwoPointProblem<Number>& problem, double start) : problem_(problem), start_(start) {}
+  TwoPointFunctions(const TwoPointProblem<Number>& problem, double start);
 
   /// The number of equations.
   [[nodiscard]] std::size_t size() const { return problem_.size; }
@@ -63,6 +63,7 @@ class TwoPointFunctions {
 
   const TwoPointProblem<Number>& problem_;
   double start_;
+  std::vector<Number> first_value_, first_derivative_;  // I - S^+ S and (I - S)^+; empty without S
   bool points_are_independent_ = true, points_were_compared_ = false;
   ConditionJacobians<Number> condition_jacobians_;
   struct {

@@ -221,8 +221,6 @@ def solve_bvp(
     y: NDArray[Any],
     p: NDArray[Any],
     S: NDArray[Any],
-    first_value: NDArray[Any],
-    first_derivative: NDArray[Any],
     fun_jac: Callable[..., Any] | None,
     bc_jac: Callable[..., Any] | None,
     tol: float,

@@ -166,27 +166,15 @@ def _checked_parameters(p: ArrayLike | None, dtype: Any) -> NDArray[Any]:
     return parameters
 
 
-def _singular_matrices(S: ArrayLike | None, n: int, dtype: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """S, I - S^+ S that forces S y(a) = 0, and (I - S)^+ that gives the slope at a; empty where S is None."""
+def _checked_singular_term(S: ArrayLike | None, n: int, dtype: Any) -> NDArray[Any]:
     if S is None:
-        none = np.empty((0, 0), dtype)
-        return none, none, none
-    matrix = np.array(S, dtype=dtype, order="C")
+        return np.empty((0, 0), dtype)
+    matrix: NDArray[Any] = np.array(S, dtype=dtype, order="C")
     if matrix.shape != (n, n):
         raise ValueError(f"`S` is expected to have shape {(n, n)}, but actually has {matrix.shape}")
-    if not np.all(np.isfinite(matrix)):
+    if not np.isfinite(matrix).all():
         raise ValueError("`S` must be finite.")
-    identity = np.identity(n)
-    _, sizes, rows = np.linalg.svd(matrix)
-    kept = rows[sizes > _EPS * n * sizes[0]]
-    try:
-        slope = np.linalg.inv(identity - matrix)
-        regular = np.abs(slope).max() * np.abs(identity - matrix).max() * _EPS * n < 1e-8
-    except np.linalg.LinAlgError:
-        regular = False
-    if not regular:
-        slope = np.linalg.pinv(identity - matrix)
-    return matrix, (identity - kept.conj().T @ kept).astype(dtype, copy=False), slope
+    return matrix
 
 
 def _checked_tolerance(name: str, value: float) -> float:
@@ -342,7 +330,7 @@ def solve_bvp(
         print("".join(f"{title:^15}" for title in (
             "Iteration", "Max residual", "Max BC residual", "Total nodes", "Nodes added")))
     found = _continuo.solve_bvp(
-        fun, bc, mesh, guess, parameters, *_singular_matrices(S, guess.shape[0], guess.dtype), fun_jac, bc_jac,
+        fun, bc, mesh, guess, parameters, _checked_singular_term(S, guess.shape[0], guess.dtype), fun_jac, bc_jac,
         tol, tol if bc_tol is None else _checked_tolerance("bc_tol", bc_tol), int(max_nodes),
         _print_progress if verbose == 2 else None)
     status = found["ending"]

@@ -315,8 +315,7 @@ py::dict result_of(const TwoPointSolution<Number>& solution, std::size_t n) {
 
 template <class Number>
 py::dict solve(py::object fun, py::object bc, const Array<double>& x, const Array<Number>& y, const Array<Number>& p,
-               const Array<Number>& singular_term, const Array<Number>& first_value,
-               const Array<Number>& first_derivative, py::object fun_jac, py::object bc_jac, double tol, double bc_tol,
+               const Array<Number>& singular_term, py::object fun_jac, py::object bc_jac, double tol, double bc_tol,
                std::size_t max_nodes, const py::object& progress) {
   const auto n = static_cast<std::size_t>(y.shape(0));
   TwoPointProblem<Number> problem{.size = n, .parameters = static_cast<std::size_t>(p.size())};
@@ -329,8 +328,6 @@ py::dict solve(py::object fun, py::object bc, const Array<double>& x, const Arra
     if (native) add_compiled(*native, problem);
   }
   problem.singular_term = vector_of<Number>(singular_term);
-  problem.first_value = vector_of<Number>(first_value);
-  problem.first_derivative = vector_of<Number>(first_derivative);
   TwoPointOptions options{.tolerance = tol, .condition_tolerance = bc_tol, .most_nodes = max_nodes};
   if (!progress.is_none())
     options.progress = [&progress, &lock](const TwoPointProgress& now) {
@@ -388,9 +385,8 @@ Array<Number> evaluate(const Array<double>& x, const Array<Number>& c, const Arr
 template <class Number>
 void add(py::module_& module) {
   module.def("solve_bvp", &solve<Number>, py::arg("fun"), py::arg("bc"), py::arg("x").noconvert(),
-             py::arg("y").noconvert(), py::arg("p"), py::arg("S"), py::arg("first_value"), py::arg("first_derivative"),
-             py::arg("fun_jac"), py::arg("bc_jac"), py::arg("tol"), py::arg("bc_tol"), py::arg("max_nodes"),
-             py::arg("progress"));
+             py::arg("y").noconvert(), py::arg("p"), py::arg("S"), py::arg("fun_jac"), py::arg("bc_jac"),
+             py::arg("tol"), py::arg("bc_tol"), py::arg("max_nodes"), py::arg("progress"));
   module.def("evaluate_cubics", &evaluate<Number>, py::arg("x"), py::arg("c").noconvert(), py::arg("points"),
              py::arg("nu"), py::arg("extrapolate"));
 }
