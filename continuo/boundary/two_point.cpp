@@ -15,21 +15,23 @@ namespace {
 constexpr std::size_t most_meshes_for_conditions = 10;
 constexpr double most_relative_error = 0.3;  // of a solution that is one
 constexpr std::size_t most_doubts = 2;       // halving all intervals divides the error by 16, where there is a solution
-constexpr double much_too_large = 100;       // times the tolerance: such intervals are cut in three, not in two
+/// Times the tolerance: with such residuals y changes so little on the next mesh that the derivatives serve again.
+constexpr double near = 100;
+constexpr double much_too_large = 100;  // times the tolerance: such intervals are cut in three, not in two
 
 /// Into how many parts each interval is to be cut.
 std::vector<std::size_t> parts_of_intervals(const std::vector<double>& residuals, double tolerance) {
   std::vector<std::size_t> parts;
+  parts.reserve(residuals.size());
   for (const double residual : residuals)
     parts.push_back(residual >= much_too_large * tolerance ? 3 : residual > tolerance ? 2 : 1);
   return parts;
 }
 
-/// The nodes within an interval.
-std::vector<double> inner_nodes(double first, double last, std::size_t parts) {
-  if (parts == 2) return {0.5 * (first + last)};
-  if (parts == 3) return {(2 * first + last) / 3, (first + 2 * last) / 3};
-  return {};
+/// The end of a part of an interval, one of two or of three.
+double inner_node(double first, double last, std::size_t part, std::size_t parts) {
+  if (parts == 2) return 0.5 * (first + last);
+  return part == 1 ? (2 * first + last) / 3 : (first + 2 * last) / 3;
 }
 
 /// Of a cubic at s.
@@ -58,7 +60,7 @@ class TwoPointSearch {
       keep(equations, begins);
       if (is_done(equations, ending, begins)) return std::move(solution_);
       p = solution_.p;
-      y = refine(equations);
+      y = refine(equations, ending == NewtonEnding::converged && functions.points_are_independent());
       if (y.empty()) return std::move(solution_);
     }
   }
@@ -127,15 +129,38 @@ class TwoPointSearch {
     for (auto [known, points] : {std::pair(&known_.nodes, nodes), std::pair(&known_.middles, nodes - 1)})
       known->f.assign(problem_.size * points, Number{}), known->is_known.assign(points, false);
   }
+  /// The derivatives on the mesh, which the refined one has where it has the points. They are kept where the solution
+  /// is so near that it will hardly change.
+  void keep_jacobians(const PointJacobians<Number>& old, std::size_t nodes) {
+    const std::size_t block = problem_.size * problem_.size, border = problem_.size * problem_.parameters;
+    PointJacobians<Number>& to = known_.jacobians;
+    to.by_y.resize((2 * nodes - 1) * block), to.by_p.resize((2 * nodes - 1) * border);
+    known_.jacobian_is_known.assign(2 * nodes - 1, false);
+    const auto keep = [&](std::size_t point, std::size_t from) {
+      std::copy_n(&old.by_y[from * block], block, &to.by_y[point * block]);
+      std::copy_n(old.by_p.data() + from * border, border, to.by_p.data() + point * border);
+      known_.jacobian_is_known[point] = true;
+    };
+    std::size_t point = 0;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      keep(point, 2 * k);
+      if (parts_[k] < 3) keep(point + parts_[k], 2 * k + 1);  // the middle stays one, or is a node now
+      point += 2 * parts_[k];
+    }
+    keep(point, 2 * parts_.size());
+  }
   /// The mesh refined, and y there by the spline; empty where nodes would be equal in the digits of a double. f is
   /// known at the old nodes, at new ones that were middles, and in the middles of intervals that are not cut.
-  std::vector<Number> refine(const TwoPointEquations<Number>& equations) {
+  std::vector<Number> refine(const TwoPointEquations<Number>& equations, bool is_converged) {
     const std::size_t n = problem_.size, old_nodes = solution_.x.size();
     const std::size_t nodes = old_nodes + solution_.last.added;
     std::vector<double> x;
     std::vector<Number> y;
     x.reserve(nodes), y.reserve(n * nodes + problem_.parameters);
     begin_known(nodes);
+    known_.jacobian_is_known.clear();
+    if (is_converged && solution_.last.residual < near * options_.tolerance)
+      keep_jacobians(equations.jacobians(), nodes);
     const auto keep_slope = [n](PartlyKnown<Number>& to, std::size_t point, const std::vector<Number>& f,
                                 std::size_t from) {
       const std::size_t points = to.is_known.size(), old_points = f.size() / n;
@@ -150,7 +175,8 @@ class TwoPointSearch {
       if (k + 1 == old_nodes) break;
       if (parts_[k] == 1) keep_slope(known_.middles, x.size() - 1, equations.f_in_middles(), k);
       if (parts_[k] == 2) keep_slope(known_.nodes, x.size(), equations.f_in_middles(), k);
-      for (const double node : inner_nodes(first, solution_.x[k + 1], parts_[k])) {
+      for (std::size_t part = 1; part < parts_[k]; ++part) {
+        const double node = inner_node(first, solution_.x[k + 1], part, parts_[k]);
         x.push_back(node);
         for (std::size_t i = 0; i < n; ++i) y.push_back(value(equations.spline(k, i), node - first));
       }

@@ -15,7 +15,7 @@ constexpr std::size_t most_iterations = 8, most_jacobians = 4;  // on one mesh: 
 constexpr double least_damping =
     1.0 / 16;                           // a correction so damped is made whether it helps or not, where f has a value
 constexpr double least_defined = 1e-4;  // so much of a correction is tried to find a place where f has a value
-constexpr std::size_t few_intervals = 64;   // with three points each a call of f costs little more than with one
+constexpr std::size_t few_intervals = 128;  // with three points each a call of f costs little more than with one
 constexpr double part_of_tolerance = 5e-2;  // which the iteration may leave of the residual
 
 template <class Number>
@@ -29,18 +29,6 @@ double squared_size_of(std::span<const Number> numbers) {
 template <class Number>
 std::pair<Number, Number> value_and_slope(const std::array<Number, 4>& c, double s) {
   return {((c[0] * s + c[1]) * s + c[2]) * s + c[3], (c[0] * (3 * s) + c[1] * 2) * s + c[2]};
-}
-
-/// Numbers at the nodes and in the middles, component by component, as those of all points in their order.
-template <class Number>
-void in_order(const std::vector<Number>& at_nodes, const std::vector<Number>& in_middles, std::size_t components,
-              std::vector<Number>& all) {
-  const std::size_t nodes = at_nodes.size() / components, middles = nodes - 1;
-  for (std::size_t i = 0; i < components; ++i) {
-    Number* const to = &all[i * (nodes + middles)];
-    for (std::size_t k = 0; k < nodes; ++k) to[2 * k] = at_nodes[i * nodes + k];
-    for (std::size_t k = 0; k < middles; ++k) to[2 * k + 1] = in_middles[i * middles + k];
-  }
 }
 
 }  // namespace
@@ -61,6 +49,8 @@ TwoPointEquations<Number>::TwoPointEquations(TwoPointFunctions<Number>& function
       middle_f_(std::move(known.middles.f)),
       equations_(z_.size()),
       correction_(z_.size()),
+      jacobians_(std::move(known.jacobians)),
+      jacobian_is_known_(std::move(known.jacobian_is_known)),
       matrix_(n_, k_, intervals()) {
   for (std::size_t k = 0; k < intervals(); ++k) middles_[k] = x[k] + 0.5 * length(k);
   node_f_.resize(node_y_.size()), middle_f_.resize(middle_y_.size());
@@ -144,14 +134,14 @@ void TwoPointEquations<Number>::evaluate_with_residual_points(std::span<const Nu
 }
 
 /// f everywhere, for the unknowns z. Two calls: in the middles y follows from the slopes at the nodes. Where points are
-/// few, those of the residual are taken along: that saves a call at the end.
+/// few, or the equations will be solved, those of the residual are taken along: that saves a call at the end.
 template <class Number>
-void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z) {
+void TwoPointEquations<Number>::evaluate(const std::vector<Number>& z, bool expects_solution) {
   const auto p = std::span(z).subspan(nodes() * n_);
   set_nodes(z);
   functions_.derivative(x_, node_y_, p, node_f_);
   set_middles();
-  has_residuals_ = intervals() <= few_intervals;
+  has_residuals_ = expects_solution || intervals() <= few_intervals;
   if (has_residuals_) {
     evaluate_with_residual_points(p);
   } else {
@@ -212,17 +202,42 @@ void TwoPointEquations<Number>::fill_interval(std::size_t k) {
   }
 }
 
+/// The derivatives of f at those of the nodes and middles where they are not known.
+template <class Number>
+void TwoPointEquations<Number>::take_jacobians() {
+  const std::size_t points = nodes() + intervals();
+  std::vector<std::size_t> unknown;
+  for (std::size_t q = 0; q < points; ++q)
+    if (jacobian_is_known_.empty() || !jacobian_is_known_[q]) unknown.push_back(q);
+  if (unknown.empty()) return;
+  const std::size_t count = unknown.size();
+  std::vector<double> x(count);
+  std::vector<Number> y(count * n_), f(count * n_);
+  for (std::size_t u = 0; u < count; ++u) x[u] = unknown[u] % 2 == 0 ? x_[unknown[u] / 2] : middles_[unknown[u] / 2];
+  const auto gather = [&](const std::vector<Number>& at_nodes, const std::vector<Number>& in_middles,
+                          std::vector<Number>& some) {
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t u = 0; u < count; ++u) {
+        const std::size_t k = unknown[u] / 2;
+        some[i * count + u] = unknown[u] % 2 == 0 ? at_nodes[i * nodes() + k] : in_middles[i * intervals() + k];
+      }
+  };
+  gather(node_y_, middle_y_, y);
+  gather(node_f_, middle_f_, f);
+  if (count == points) return functions_.jacobians(x, y, p(), f, jacobians_);
+  PointJacobians<Number> some;
+  functions_.jacobians(x, y, p(), f, some);
+  const std::size_t block = n_ * n_, border = n_ * k_;
+  for (std::size_t u = 0; u < count; ++u) {
+    std::copy_n(&some.by_y[u * block], block, &jacobians_.by_y[unknown[u] * block]);
+    std::copy_n(some.by_p.data() + u * border, border, jacobians_.by_p.data() + unknown[u] * border);
+  }
+}
+
 /// False where a derivative is not finite.
 template <class Number>
 bool TwoPointEquations<Number>::fill_matrix() {
-  const std::size_t points = nodes() + intervals();
-  std::vector<double> x(points);
-  std::vector<Number> y(points * n_), f(points * n_);
-  for (std::size_t k = 0; k < nodes(); ++k) x[2 * k] = x_[k];
-  for (std::size_t k = 0; k < intervals(); ++k) x[2 * k + 1] = middles_[k];
-  in_order(node_y_, middle_y_, n_, y);
-  in_order(node_f_, middle_f_, n_, f);
-  functions_.jacobians(x, y, p(), f, jacobians_);
+  take_jacobians();
   const auto at_nodes = this->y();
   const ConditionJacobians<Number>& of_conditions =
       functions_.condition_jacobians(at_nodes.first(n_), at_nodes.last(n_), p(), conditions());
@@ -248,10 +263,36 @@ bool TwoPointEquations<Number>::is_solved(double tolerance, double condition_tol
   return std::ranges::all_of(conditions(), [&](const Number& g) { return size_of(g) < condition_tolerance; });
 }
 
+/// A full step by derivatives that were taken, in part, on the mesh before: there is little to correct. Where it does
+/// not solve the equations the iteration begins where it was, or where this is better.
+template <class Number>
+bool TwoPointEquations<Number>::is_solved_by_known(double tolerance, double condition_tolerance) {
+  const bool has_correction = fill_matrix() && matrix_.factor();
+  jacobian_is_known_.clear();
+  if (!has_correction) return false;
+  correction_ = equations_;
+  matrix_.solve(correction_);
+  for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - correction_[i];
+  functions_.restrict_first(std::span(trial_).first(n_));
+  evaluate(trial_, true);
+  const bool is_solution = is_solved(tolerance, condition_tolerance);
+  if (!is_solution) {
+    simplified_ = equations_;
+    matrix_.solve(simplified_);
+    if (!(squared_size_of<Number>(simplified_) < squared_size_of<Number>(correction_))) {
+      evaluate(z_);
+      return false;
+    }
+  }
+  z_.swap(trial_);
+  return is_solution;
+}
+
 /// Damped by the natural monotonicity test; after a full step the matrix serves once more. U. Ascher, R. Mattheij,
 /// R. Russell, "Numerical Solution of Boundary Value Problems for Ordinary Differential Equations" (1995), 8.1.
 template <class Number>
 NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double condition_tolerance) {
+  if (!jacobian_is_known_.empty() && is_solved_by_known(tolerance, condition_tolerance)) return NewtonEnding::converged;
   constexpr double descent = 0.2;
   std::size_t jacobians = 0;
   bool matrix_serves = false;

@@ -21,10 +21,13 @@ struct PartlyKnown {
   std::vector<char> is_known;  // of each point; empty: nowhere
 };
 
-/// f at the nodes of a mesh and at the middles between them, as far as it is known.
+/// What is known on a mesh of those before it: f at the nodes and at the middles between them, and the derivatives at
+/// all of them in their order, where they were last taken.
 template <class Number>
 struct KnownSlopes {
   PartlyKnown<Number> nodes, middles;
+  PointJacobians<Number> jacobians;
+  std::vector<char> jacobian_is_known;  // of each point; empty: nowhere
 };
 
 /// The equations on one mesh. What is said of the solution holds for the unknowns evaluated last.
@@ -47,6 +50,8 @@ class TwoPointEquations {
   [[nodiscard]] const std::vector<Number>& f_at_nodes() const { return node_f_; }
   [[nodiscard]] const std::vector<Number>& f_in_middles() const { return middle_f_; }
   /// @}
+  /// The derivatives last taken, at the nodes and the middles between them in their order.
+  [[nodiscard]] const PointJacobians<Number>& jacobians() const { return jacobians_; }
   /// The spline's component i in interval k.
   [[nodiscard]] std::array<Number, 4> spline(std::size_t k, std::size_t i) const {
     const Number* const y = &node_y_[i * nodes() + k];
@@ -73,8 +78,10 @@ class TwoPointEquations {
   void evaluate_unknown(std::span<const double> x, const std::vector<Number>& y, const std::vector<char>& is_known,
                         std::vector<Number>& f);
   void evaluate_with_residual_points(std::span<const Number> p);
-  void evaluate(const std::vector<Number>& z);
+  void evaluate(const std::vector<Number>& z, bool expects_solution = false);
   void evaluate_equations(const std::vector<Number>& z);
+  void take_jacobians();
+  [[nodiscard]] bool is_solved_by_known(double tolerance, double condition_tolerance);
   bool fill_matrix();
   void fill_interval(std::size_t k);
   [[nodiscard]] bool is_solved(double tolerance, double condition_tolerance) const;
@@ -91,6 +98,7 @@ class TwoPointEquations {
   std::vector<Number> equations_;                              // what is left of each, interval by interval
   std::vector<Number> correction_, simplified_;
   PointJacobians<Number> jacobians_;
+  std::vector<char> jacobian_is_known_;  // of the mesh before, for the first correction
   AlmostBlockDiagonal<Number> matrix_;
 };
 

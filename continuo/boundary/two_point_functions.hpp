@@ -36,7 +36,8 @@ class TwoPointFunctions {
   [[nodiscard]] std::size_t parameters() const { return problem_.parameters; }
   /// f, with the singular term, at the points x.
   void derivative(std::span<const double> x, std::span<const Number> y, std::span<const Number> p, std::span<Number> f);
-  /// Its derivatives at the points x, where it is f. The points are those of a mesh and the middles between them.
+  /// Its derivatives at the points x, where it is f. The points are those of a mesh and the middles between them, or
+  /// some of them where points do not depend on each other.
   void jacobians(std::span<const double> x, std::span<const Number> y, std::span<const Number> p,
                  std::span<const Number> f, PointJacobians<Number>& result);
   /// The residuals of the conditions.
@@ -47,6 +48,8 @@ class TwoPointFunctions {
   /// Their derivatives, where they are `residuals`.
   const ConditionJacobians<Number>& condition_jacobians(std::span<const Number> y_first, std::span<const Number> y_last,
                                                         std::span<const Number> p, std::span<const Number> residuals);
+  /// Whether what f is at a point does not depend on the other ones, as far as seen.
+  [[nodiscard]] bool points_are_independent() const { return points_are_independent_; }
   /// Makes y(a) one that the singular term allows.
   void restrict_first(std::span<Number> y_first) const;
 

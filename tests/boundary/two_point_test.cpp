@@ -45,6 +45,31 @@ TEST(TwoPoint, MeetsTheClosedFormWhateverTheTolerance) {
   }
 }
 
+TEST(TwoPoint, TakesDerivativesOnTheLastMeshOnlyWhereItIsNew) {
+  auto problem = exponentials(100, 1, 0);
+  problem.derivative = [](Values x, Values y, Values, std::span<double> f) {
+    for (std::size_t q = 0; q < x.size(); ++q) f[q] = y[x.size() + q], f[x.size() + q] = 100 * std::sinh(y[q]);
+  };
+  std::vector<std::size_t> points;
+  problem.derivative_jacobian = [&points](Values x, Values y, Values, std::span<double> by_y, std::span<double>) {
+    const std::size_t count = x.size();
+    points.push_back(count);
+    for (std::size_t q = 0; q < count; ++q) {
+      by_y[q] = by_y[3 * count + q] = 0, by_y[count + q] = 1;
+      by_y[2 * count + q] = 100 * std::cosh(y[q]);
+    }
+  };
+  const TwoPointOptions options{.tolerance = 1e-7, .condition_tolerance = 1e-7, .most_nodes = 10'000};
+  const auto found = solve_two_point<double>(problem, even_mesh(0, 1, 4), std::vector<double>(10), {}, options);
+  ASSERT_EQ(found.ending, TwoPointEnding::solved);
+  EXPECT_LE(points.back(), found.x.size());  // of 2 nodes - 1 points
+  problem.derivative_jacobian = {};
+  const auto by_differences =
+      solve_two_point<double>(problem, even_mesh(0, 1, 4), std::vector<double>(10), {}, options);
+  ASSERT_EQ(found.x, by_differences.x);
+  for (std::size_t e = 0; e < found.y.size(); ++e) EXPECT_NEAR(found.y[e], by_differences.y[e], 1e-6);
+}
+
 TEST(TwoPoint, FindsUnknownParameters) {
   TwoPointProblem<double> problem{.size = 2, .parameters = 1};
   problem.derivative = [](Values x, Values y, Values p, std::span<double> f) {
