@@ -60,9 +60,7 @@ class SingularValues {
     for (std::size_t i = 0; i < n_; ++i) sum += squared_size(column[i]);
     return std::sqrt(sum);
   }
-  [[nodiscard]] bool is_kept(std::size_t j) const {
-    return sizes_[j] > rounding() * std::ranges::max(sizes_);
-  }
+  [[nodiscard]] bool is_kept(std::size_t j) const { return sizes_[j] > rounding() * std::ranges::max(sizes_); }
   /// result += factor column row^H.
   void add_product(const Number* column, const Number* row, double factor, std::vector<Number>& result) const {
     for (std::size_t i = 0; i < n_; ++i)

@@ -16,7 +16,7 @@ constexpr std::size_t most_meshes_for_conditions = 10;
 constexpr double most_relative_error = 0.3;  // of a solution that is one
 constexpr std::size_t most_doubts = 2;       // halving all intervals divides the error by 16, where there is a solution
 /// Times the tolerance: with such residuals y changes so little on the next mesh that the derivatives serve again.
-constexpr double near = 100;
+constexpr double near = 10;
 constexpr double much_too_large = 100;  // times the tolerance: such intervals are cut in three, not in two
 
 /// Into how many parts each interval is to be cut.
@@ -161,20 +161,20 @@ class TwoPointSearch {
     known_.jacobian_is_known.clear();
     if (is_converged && solution_.last.residual < near * options_.tolerance)
       keep_jacobians(equations.jacobians(), nodes);
-    const auto keep_slope = [n](PartlyKnown<Number>& to, std::size_t point, const std::vector<Number>& f,
-                                std::size_t from) {
-      const std::size_t points = to.is_known.size(), old_points = f.size() / n;
+    const auto keep_slope = [n](PartlyKnown<Number>& to, std::size_t point, std::size_t points,
+                                const std::vector<Number>& f, std::size_t from, std::size_t old_points) {
       to.is_known[point] = true;
       for (std::size_t i = 0; i < n; ++i) to.f[i * points + point] = f[i * old_points + from];
     };
     for (std::size_t k = 0; k < old_nodes; ++k) {
       const double first = solution_.x[k];
-      keep_slope(known_.nodes, x.size(), equations.f_at_nodes(), k);
+      keep_slope(known_.nodes, x.size(), nodes, equations.f_at_nodes(), k, old_nodes);
       x.push_back(first);
       for (std::size_t i = 0; i < n; ++i) y.push_back(solution_.y[k * n + i]);
       if (k + 1 == old_nodes) break;
-      if (parts_[k] == 1) keep_slope(known_.middles, x.size() - 1, equations.f_in_middles(), k);
-      if (parts_[k] == 2) keep_slope(known_.nodes, x.size(), equations.f_in_middles(), k);
+      const std::vector<Number>& middles = equations.f_in_middles();
+      if (parts_[k] == 1) keep_slope(known_.middles, x.size() - 1, nodes - 1, middles, k, old_nodes - 1);
+      if (parts_[k] == 2) keep_slope(known_.nodes, x.size(), nodes, middles, k, old_nodes - 1);
       for (std::size_t part = 1; part < parts_[k]; ++part) {
         const double node = inner_node(first, solution_.x[k + 1], part, parts_[k]);
         x.push_back(node);

@@ -16,6 +16,7 @@ constexpr double least_damping =
     1.0 / 16;                           // a correction so damped is made whether it helps or not, where f has a value
 constexpr double least_defined = 1e-4;  // so much of a correction is tried to find a place where f has a value
 constexpr std::size_t few_intervals = 128;  // with three points each a call of f costs little more than with one
+constexpr double quadratic = 1e4;  // times what the iteration may leave: one correction mostly leaves less than that
 constexpr double part_of_tolerance = 5e-2;  // which the iteration may leave of the residual
 
 template <class Number>
@@ -294,6 +295,7 @@ template <class Number>
 NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double condition_tolerance) {
   if (!jacobian_is_known_.empty() && is_solved_by_known(tolerance, condition_tolerance)) return NewtonEnding::converged;
   constexpr double descent = 0.2;
+  bool expects_solution = is_solved(quadratic * tolerance, quadratic * condition_tolerance);
   std::size_t jacobians = 0;
   bool matrix_serves = false;
   const auto correct = [&]() -> NewtonCorrection {
@@ -311,7 +313,7 @@ NewtonEnding TwoPointEquations<Number>::iterate(double tolerance, double conditi
   const auto attempt = [&](double part, double cost) {
     for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - correction_[i] * part;
     functions_.restrict_first(std::span(trial_).first(n_));
-    evaluate(trial_);
+    evaluate(trial_, std::exchange(expects_solution, false));
     if (part == 1 && jacobians < most_jacobians && is_solved(tolerance, condition_tolerance)) {
       z_.swap(trial_);
       return NewtonAttempt::solved;

@@ -1,8 +1,10 @@
 // solve_bvp: functions of Python that take many points at once, for the solver of two-point problems.
 #include <algorithm>
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -35,7 +37,7 @@ static_assert(sizeof(std::complex<double>) == sizeof(ComplexNumber<double>));
 
 template <class Number>
 using Array = py::array_t<NumberOfPython<Number>, py::array::c_style | py::array::forcecast>;
-using Shape = std::vector<py::ssize_t>;
+using Shape = std::span<const py::ssize_t>;
 
 template <class Number>
 const Number* numbers_of(const Array<Number>& array) {
@@ -44,7 +46,7 @@ const Number* numbers_of(const Array<Number>& array) {
 
 /// A new array of these numbers: what NumPy does itself, since functions are called with a million of them.
 template <class Number>
-Array<Number> array_of(const Shape& shape, const Number* numbers) {
+Array<Number> array_of(Shape shape, const Number* numbers) {
   static const py::handle dtype = py::dtype::of<NumberOfPython<Number>>().release();
   auto& numpy = py::detail::npy_api::get();
   PyObject* const array =
@@ -57,10 +59,10 @@ Array<Number> array_of(const Shape& shape, const Number* numbers) {
 }
 template <class Number>
 Array<Number> array_of(std::span<const Number> numbers) {
-  return array_of(Shape{static_cast<py::ssize_t>(numbers.size())}, numbers.data());
+  return array_of(std::array{static_cast<py::ssize_t>(numbers.size())}, numbers.data());
 }
 
-std::string text_of(const Shape& shape) {
+std::string text_of(Shape shape) {
   std::string text = "(";
   for (std::size_t i = 0; i < shape.size(); ++i)
     text += (i > 0 ? " " : "") + std::to_string(shape[i]) + (i + 1 < shape.size() || i == 0 ? "," : "");
@@ -75,7 +77,7 @@ bool holds_no_none(const py::array& objects) {
 
 /// What a function of the user's has returned, as an array of numbers of this shape. The message is SciPy's.
 template <class Number>
-Array<Number> checked(const py::object& returned, const Shape& shape, const char* name) {
+Array<Number> checked(const py::object& returned, Shape shape, const char* name) {
   auto array = py::reinterpret_steal<Array<Number>>(nullptr);
   if (py::isinstance<Array<Number>>(returned)) {
     array = py::reinterpret_borrow<Array<Number>>(returned);
@@ -96,12 +98,13 @@ Array<Number> checked(const py::object& returned, const Shape& shape, const char
   }
   if (!std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim()))
     throw py::value_error(std::string("`") + name + "` return is expected to have shape " + text_of(shape) +
-                          ", but actually has " + text_of(Shape(array.shape(), array.shape() + array.ndim())) + ".");
+                          ", but actually has " +
+                          text_of(Shape(array.shape(), static_cast<std::size_t>(array.ndim()))) + ".");
   return array;
 }
 
 template <class Number>
-void copy_checked(const py::object& returned, const Shape& shape, const char* name, std::span<Number> to) {
+void copy_checked(const py::object& returned, Shape shape, const char* name, std::span<Number> to) {
   const auto array = checked<Number>(returned, shape, name);
   std::copy_n(numbers_of<Number>(array), to.size(), to.data());
 }
@@ -189,7 +192,7 @@ class FunctionsOfPython {
     check_signals();
     const auto count = static_cast<py::ssize_t>(x.size());
     const auto points = array_of<double>(x);
-    const auto values = array_of<Number>(Shape{n_, count}, y.data());
+    const auto values = array_of<Number>(std::array{n_, count}, y.data());
     return k_ == 0 ? function(points, values) : function(points, values, array_of<Number>(p));
   }
   py::object call_at_ends(const py::object& function, Numbers first, Numbers last, Numbers p) const {
@@ -200,7 +203,7 @@ class FunctionsOfPython {
 
   void derivative(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f) const {
     const Lock::Taken taken(lock_);
-    const Shape shape{n_, static_cast<py::ssize_t>(x.size())};
+    const std::array shape{n_, static_cast<py::ssize_t>(x.size())};
     const bool is_mesh = x.size() < 2 || x[0] < x[1];
     try {
       copy_checked<Number>(call_at_points(fun_, x, y, p), shape, "fun", f);
@@ -215,25 +218,25 @@ class FunctionsOfPython {
   }
   void conditions(Numbers first, Numbers last, Numbers p, std::span<Number> g) const {
     const Lock::Taken taken(lock_);
-    copy_checked<Number>(call_at_ends(bc_, first, last, p), Shape{n_ + k_}, "bc", g);
+    copy_checked<Number>(call_at_ends(bc_, first, last, p), std::array{n_ + k_}, "bc", g);
   }
   void jacobian(std::span<const double> x, Numbers y, Numbers p, std::span<Number> by_y, std::span<Number> by_p) const {
     const Lock::Taken taken(lock_);
     const auto count = static_cast<py::ssize_t>(x.size());
     const py::object returned = call_at_points(fun_jac_, x, y, p);
-    const Shape shape{n_, n_, count};
+    const std::array shape{n_, n_, count};
     if (k_ == 0) return copy_checked<Number>(returned, shape, "fun_jac", by_y);
     const auto parts = parts_of(returned, 2, "fun_jac");
     copy_checked<Number>(parts[0], shape, "fun_jac", by_y);
-    copy_checked<Number>(parts[1], Shape{n_, k_, count}, "fun_jac", by_p);
+    copy_checked<Number>(parts[1], std::array{n_, k_, count}, "fun_jac", by_p);
   }
   void condition_jacobian(Numbers first, Numbers last, Numbers p, std::span<Number> by_first, std::span<Number> by_last,
                           std::span<Number> by_p) const {
     const Lock::Taken taken(lock_);
     const auto parts = parts_of(call_at_ends(bc_jac_, first, last, p), k_ == 0 ? 2 : 3, "bc_jac");
-    copy_checked<Number>(parts[0], Shape{n_ + k_, n_}, "bc_jac", by_first);
-    copy_checked<Number>(parts[1], Shape{n_ + k_, n_}, "bc_jac", by_last);
-    if (k_ > 0) copy_checked<Number>(parts[2], Shape{n_ + k_, k_}, "bc_jac", by_p);
+    copy_checked<Number>(parts[0], std::array{n_ + k_, n_}, "bc_jac", by_first);
+    copy_checked<Number>(parts[1], std::array{n_ + k_, n_}, "bc_jac", by_last);
+    if (k_ > 0) copy_checked<Number>(parts[2], std::array{n_ + k_, k_}, "bc_jac", by_p);
   }
 
   Lock& lock_;
@@ -289,13 +292,14 @@ Array<Number> coefficients(const TwoPointSolution<Number>& solution, std::size_t
       for (std::size_t k = 0; k < 4; ++k) result[k * intervals * n + first] = c[k];
     }
   }
-  return array_of<Number>(Shape{4, static_cast<py::ssize_t>(intervals), static_cast<py::ssize_t>(n)}, result.data());
+  return array_of<Number>(std::array{py::ssize_t{4}, static_cast<py::ssize_t>(intervals), static_cast<py::ssize_t>(n)},
+                          result.data());
 }
 
 template <class Number>
 py::dict result_of(const TwoPointSolution<Number>& solution, std::size_t n) {
   const std::size_t nodes = solution.x.size();
-  const Shape table{static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(nodes)};
+  const std::array table{static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(nodes)};
   py::dict result;
   result["x"] = array_of<double>(solution.x);
   result["y"] = array_of<Number>(table, transposed(solution.y.data(), nodes, n).data());
@@ -351,7 +355,7 @@ Array<Number> evaluate(const Array<double>& x, const Array<Number>& c, const Arr
                        bool extrapolate) {
   const auto intervals = static_cast<std::size_t>(c.shape(1)), n = static_cast<std::size_t>(c.shape(2));
   const auto count = static_cast<std::size_t>(points.size());
-  Array<Number> result(Shape{c.shape(2), points.size()});
+  Array<Number> result(std::vector{c.shape(2), points.size()});
   Number* const to = reinterpret_cast<Number*>(result.mutable_data());
   const Number* const from = numbers_of<Number>(c);
   const double* const nodes = x.data();
