@@ -17,6 +17,9 @@ constexpr double most_relative_error = 0.3;  // of a solution that is one
 constexpr std::size_t most_doubts = 2;       // halving all intervals divides the error by 16, where there is a solution
 /// Times the tolerance: with such residuals y changes so little on the next mesh that the derivatives serve again.
 constexpr double near = 10;
+/// Times the tolerance: of an accepted mesh such residuals are found once more by more points, since the few of the
+/// first estimate see up to three times too little of what varies within an interval.
+constexpr double refined_from = 0.3;
 constexpr double much_too_large = 100;  // times the tolerance: such intervals are cut in three, not in two
 
 /// Into how many parts each interval is to be cut.
@@ -93,6 +96,10 @@ class TwoPointSearch {
       return end(not_finite);
     }
     if (!equations.is_finite(solution_)) return end(not_finite);
+    if (std::ranges::all_of(solution_.residuals, [this](double r) { return r <= options_.tolerance; })) {
+      equations.refine_residuals(solution_.residuals, refined_from * options_.tolerance);
+      solution_.last.residual = std::ranges::max(solution_.residuals);
+    }
     const auto strange = std::ranges::find_if_not(solution_.residuals, [](double r) { return std::isfinite(r); });
     if (strange != solution_.residuals.end()) {
       solution_.not_finite = TwoPointQuantity::derivative;

@@ -7,7 +7,8 @@
 // mean square over an interval and relative to 1 + |f|, is above the tolerance. J. Kierzenka, L. F. Shampine, "A BVP
 // solver based on residual control and the MATLAB PSE", ACM TOMS 27 (2001) 299-316; for S: L. F. Shampine, P. H. Muir,
 // H. Xu, "A user-friendly Fortran BVP solver", JNAIAM 1 (2006) 201-217. The rules by which the mesh is refined and the
-// iteration ends are those of scipy.integrate.solve_bvp, so that the nodes are the same.
+// iteration ends are those of scipy.integrate.solve_bvp, so that the nodes are the same, until a mesh is accepted: then
+// residuals near the tolerance are found once more by nine points, where SciPy trusts five.
 //
 // boundary_value.hpp is for conditions at more times than two, of higher order and with an estimate of the error; its
 // functions take one point at a time.

@@ -1,6 +1,7 @@
 // Residuals, matrix and Newton's iteration of collocation at nodes and middles.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -24,6 +25,13 @@ double squared_size_of(std::span<const Number> numbers) {
   double sum = 0;
   for (const Number& number : numbers) sum += squared_size(number);
   return sum;
+}
+
+/// Of the residual y' - f, relative to 1 + |f|, of a component at a point.
+template <class Number>
+double squared_residual(const SplineSamples<Number>& samples, std::size_t e) {
+  const double residual = size_of(samples.yp[e] - samples.f[e]) / (1 + size_of(samples.f[e]));
+  return residual * residual;
 }
 
 /// y and y' of a cubic at s.
@@ -80,23 +88,35 @@ void TwoPointEquations<Number>::set_middles() {
   }
 }
 
+/// At these parts of some intervals; f is not evaluated yet.
+template <class Number>
+template <std::size_t count>
+SplineSamples<Number> TwoPointEquations<Number>::sampled(const std::array<double, count>& thetas,
+                                                         std::span<const std::size_t> intervals) const {
+  const std::size_t points = count * intervals.size();
+  SplineSamples<Number> samples{std::vector<double>(points), std::vector<Number>(points * n_),
+                                std::vector<Number>(points * n_), std::vector<Number>(points * n_)};
+  double* x = samples.x.data();
+  for (const std::size_t k : intervals)
+    for (const double theta : thetas) *x++ = x_[k] + theta * length(k);
+  for (std::size_t i = 0; i < n_; ++i) {
+    Number* y = &samples.y[i * points];
+    Number* yp = &samples.yp[i * points];
+    for (const std::size_t k : intervals) {
+      const std::array<Number, 4> c = spline(k, i);
+      for (const double theta : thetas) std::tie(*y++, *yp++) = value_and_slope(c, theta * length(k));
+    }
+  }
+  return samples;
+}
+
 /// The points of Lobatto's quadrature with five points that are neither ends nor middles.
 template <class Number>
 void TwoPointEquations<Number>::set_residual_points() {
   const double from_middle = 0.5 * std::sqrt(3.0 / 7);
-  const std::array thetas{0.5 - from_middle, 0.5 + from_middle};
-  const std::size_t points = 2 * intervals();
-  residual_x_.resize(points), residual_y_.resize(points * n_), residual_yp_.resize(points * n_);
-  for (std::size_t q = 0; q < points; ++q) residual_x_[q] = x_[q / 2] + thetas[q % 2] * length(q / 2);
-  for (std::size_t i = 0; i < n_; ++i) {
-    Number* const y = &residual_y_[i * points];
-    Number* const yp = &residual_yp_[i * points];
-    for (std::size_t k = 0; k < intervals(); ++k) {
-      const std::array<Number, 4> c = spline(k, i);
-      for (std::size_t e = 0; e < 2; ++e)
-        std::tie(y[2 * k + e], yp[2 * k + e]) = value_and_slope(c, thetas[e] * length(k));
-    }
-  }
+  std::vector<std::size_t> all(intervals());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  at_residuals_ = sampled(std::array{0.5 - from_middle, 0.5 + from_middle}, all);
 }
 
 /// f at those of the points x where it is not known already.
@@ -124,14 +144,14 @@ void TwoPointEquations<Number>::evaluate_with_residual_points(std::span<const Nu
   const std::size_t points = 3 * intervals();
   std::vector<double> x(points);
   std::vector<Number> y(n_ * points), f(n_ * points);
+  auto& [x_others, y_others, yp_others, f_others] = at_residuals_;
   for (std::size_t k = 0; k < intervals(); ++k)
-    x[3 * k] = residual_x_[2 * k], x[3 * k + 1] = middles_[k], x[3 * k + 2] = residual_x_[2 * k + 1];
+    x[3 * k] = x_others[2 * k], x[3 * k + 1] = middles_[k], x[3 * k + 2] = x_others[2 * k + 1];
   for (std::size_t k = 0; k < n_ * intervals(); ++k)  // of one component after the other
-    y[3 * k] = residual_y_[2 * k], y[3 * k + 1] = middle_y_[k], y[3 * k + 2] = residual_y_[2 * k + 1];
+    y[3 * k] = y_others[2 * k], y[3 * k + 1] = middle_y_[k], y[3 * k + 2] = y_others[2 * k + 1];
   functions_.derivative(x, y, p, f);
-  residual_f_.resize(2 * intervals() * n_);
   for (std::size_t k = 0; k < n_ * intervals(); ++k)
-    residual_f_[2 * k] = f[3 * k], middle_f_[k] = f[3 * k + 1], residual_f_[2 * k + 1] = f[3 * k + 2];
+    f_others[2 * k] = f[3 * k], middle_f_[k] = f[3 * k + 1], f_others[2 * k + 1] = f[3 * k + 2];
 }
 
 /// f everywhere, for the unknowns z. Two calls: in the middles y follows from the slopes at the nodes. Where points are
@@ -340,25 +360,47 @@ template <class Number>
 std::vector<double> TwoPointEquations<Number>::residuals() {
   if (!has_residuals_) {
     set_residual_points();
-    residual_f_.resize(residual_y_.size());
-    functions_.derivative(residual_x_, residual_y_, p(), residual_f_);
+    functions_.derivative(at_residuals_.x, at_residuals_.y, p(), at_residuals_.f);
   }
-  std::vector<double> middle(intervals()), others(intervals());
+  middle_squares_.assign(intervals(), 0), other_squares_.assign(intervals(), 0);
   for (std::size_t i = 0; i < n_; ++i) {
     const std::size_t first = i * intervals();
     for (std::size_t k = 0; k < intervals(); ++k) {
       const double one = 1.5 * size_of(equations_[k * n_ + i]) / (length(k) * (1 + size_of(middle_f_[first + k])));
-      middle[k] += one * one;
-      for (const std::size_t e : {2 * (first + k), 2 * (first + k) + 1}) {
-        const double other = size_of(residual_yp_[e] - residual_f_[e]) / (1 + size_of(residual_f_[e]));
-        others[k] += other * other;
-      }
+      middle_squares_[k] += one * one;
+      for (const std::size_t e : {2 * (first + k), 2 * (first + k) + 1})
+        other_squares_[k] += squared_residual(at_residuals_, e);
     }
   }
   std::vector<double> result(intervals());
   for (std::size_t k = 0; k < intervals(); ++k)
-    result[k] = std::sqrt(0.5 * (32.0 / 45 * middle[k] + 49.0 / 90 * others[k]));
+    result[k] = std::sqrt(0.5 * (32.0 / 45 * middle_squares_[k] + 49.0 / 90 * other_squares_[k]));
   return result;
+}
+
+/// Four points more, such that with the five, which do not know what is between them, polynomials are integrated up to
+/// degree 13 (A. S. Kronrod's way, "Nodes and weights of quadrature formulas" (1965)): the nodes and the weights of
+/// [-1, 1] solve the equations of the even powers.
+template <class Number>
+void TwoPointEquations<Number>::refine_residuals(std::vector<double>& residuals, double least) {
+  constexpr double inner = 0.5 * 0.34098226591099297, outer = 0.5 * 0.89040552751266879;
+  constexpr double of_middle = 0.34376208721036307, of_others = 0.28397877804812111, of_inner = 0.33423373981641768,
+                   of_outer = 0.17926269955320736;
+  std::vector<std::size_t> some;
+  for (std::size_t k = 0; k < intervals(); ++k)
+    if (residuals[k] > least) some.push_back(k);
+  if (some.empty()) return;
+  SplineSamples<Number> samples = sampled(std::array{0.5 - outer, 0.5 - inner, 0.5 + inner, 0.5 + outer}, some);
+  functions_.derivative(samples.x, samples.y, p(), samples.f);
+  const std::size_t points = samples.x.size();
+  for (std::size_t s = 0; s < some.size(); ++s) {
+    double of_new = 0;
+    for (std::size_t e = 4 * s; e < n_ * points; e += points)
+      of_new += of_outer * (squared_residual(samples, e) + squared_residual(samples, e + 3)) +
+                of_inner * (squared_residual(samples, e + 1) + squared_residual(samples, e + 2));
+    const std::size_t k = some[s];
+    residuals[k] = std::sqrt(0.5 * (of_middle * middle_squares_[k] + of_others * other_squares_[k] + of_new));
+  }
 }
 
 /// e' = J e + r, where r is the residual: of each equation the integral of (1 + J (middle - x)) r over its interval is
@@ -375,8 +417,8 @@ double TwoPointEquations<Number>::relative_error(double tolerance) {
     const Number* const jacobian = &jacobians_.by_y[(2 * k + 1) * n_ * n_];
     for (std::size_t i = 0; i < n_; ++i) {
       const std::size_t e = 2 * (i * intervals() + k);
-      first[i] = residual_yp_[e] - residual_f_[e];
-      last[i] = residual_yp_[e + 1] - residual_f_[e + 1];
+      first[i] = at_residuals_.yp[e] - at_residuals_.f[e];
+      last[i] = at_residuals_.yp[e + 1] - at_residuals_.f[e + 1];
     }
     for (std::size_t i = 0; i < n_; ++i) {
       const Number middle = equations_[k * n_ + i] * 1.5;  // times h

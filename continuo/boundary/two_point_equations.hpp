@@ -30,6 +30,13 @@ struct KnownSlopes {
   std::vector<char> jacobian_is_known;  // of each point; empty: nowhere
 };
 
+/// The spline at some points: x, y, its slope and f there, component by component.
+template <class Number>
+struct SplineSamples {
+  std::vector<double> x;
+  std::vector<Number> y, yp, f;
+};
+
 /// The equations on one mesh. What is said of the solution holds for the unknowns evaluated last.
 template <class Number>
 class TwoPointEquations {
@@ -60,6 +67,8 @@ class TwoPointEquations {
   }
   /// Of each interval: y' - f, relative to 1 + |f|, root mean square.
   [[nodiscard]] std::vector<double> residuals();
+  /// Finds those of the residuals above `least` more exactly, by f at four more points of each interval.
+  void refine_residuals(std::vector<double>& residuals, double least);
   /// What these residuals, just found, make of the solution, estimated: the greatest error of a component, relative to
   /// its size and what a residual of the tolerance may add. `iterate` must have factored a matrix.
   [[nodiscard]] double relative_error(double tolerance);
@@ -74,6 +83,9 @@ class TwoPointEquations {
   [[nodiscard]] double length(std::size_t k) const { return x_[k + 1] - x_[k]; }
   void set_nodes(const std::vector<Number>& z);
   void set_middles();
+  template <std::size_t count>
+  [[nodiscard]] SplineSamples<Number> sampled(const std::array<double, count>& thetas,
+                                              std::span<const std::size_t> intervals) const;
   void set_residual_points();
   void evaluate_unknown(std::span<const double> x, const std::vector<Number>& y, const std::vector<char>& is_known,
                         std::vector<Number>& f);
@@ -92,9 +104,9 @@ class TwoPointEquations {
   std::vector<Number> z_, trial_;
   std::vector<double> middles_;
   std::vector<Number> node_y_, node_f_, middle_y_, middle_f_;  // component by component, as those that follow
-  std::vector<double> residual_x_;                             // two points of each interval
-  std::vector<Number> residual_y_, residual_yp_, residual_f_;  // the spline, its slope and f there
+  SplineSamples<Number> at_residuals_;                         // at two points of each interval
   bool has_residuals_ = false;                                 // f is known there
+  std::vector<double> middle_squares_, other_squares_;         // of the residual in the middle and at these points
   std::vector<Number> equations_;                              // what is left of each, interval by interval
   std::vector<Number> correction_, simplified_;
   PointJacobians<Number> jacobians_;

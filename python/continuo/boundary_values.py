@@ -220,7 +220,8 @@ def solve_bvp(
         bc(y(a), y(b), p) = 0
 
     with n components of y, k unknown parameters p and n + k conditions. The method is collocation of fourth
-    order with control of the residual; meshes and iterations are those of SciPy.
+    order with control of the residual; meshes and iterations are those of SciPy, until a mesh is accepted:
+    residuals near the tolerance are then found by more points.
 
     Parameters
     ----------

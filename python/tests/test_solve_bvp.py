@@ -97,8 +97,43 @@ def test_meshes_are_those_of_scipy(seed: int) -> None:
         if theirs.success:
             np.testing.assert_array_equal(ours.x, theirs.x)
             np.testing.assert_allclose(ours.y, theirs.y, rtol=1e-6, atol=1e-6 * np.abs(theirs.y).max())
-            np.testing.assert_allclose(ours.rms_residuals, theirs.rms_residuals, rtol=1e-2, atol=1e-2 * tol)
+            by_same_points = theirs.rms_residuals < 0.3 * tol  # the others are found more exactly
+            np.testing.assert_allclose(ours.rms_residuals[by_same_points], theirs.rms_residuals[by_same_points],
+                                       rtol=1e-2, atol=1e-2 * tol)
             assert ours.niter == theirs.niter
+
+
+def random_bump(seed: int) -> tuple[Any, ...]:
+    """A nonlinear problem with waves and a bump as its solution, of which few points see too little."""
+    rng = np.random.default_rng(seed)
+    a, b = rng.normal(size=(2, 2)) * 5, rng.normal(size=(2, 2))
+    place, width, rates = rng.uniform(0, 1), rng.uniform(0.03, 0.3), rng.uniform(1, 12, size=(2, 1))
+
+    def solution(x: np.ndarray) -> np.ndarray:
+        return np.sin(rates * x) + np.exp(-((x - place) / width)**2)
+
+    def field(y: np.ndarray) -> np.ndarray:
+        return a @ y + np.sin(b @ y)
+
+    def fun(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return field(y) + solution(x + 1e-20j).imag / 1e-20 - field(solution(x))
+
+    first, last = solution(np.array([0.0]))[0, 0], solution(np.array([1.0]))[1, 0]
+    return fun, (lambda ya, yb: np.array([ya[0] - first, yb[1] - last]))
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-3])
+def test_residuals_are_below_the_tolerance(tol: float) -> None:
+    """By Gauss's quadrature with 20 points. Of five points, nine of these residuals at 1e-2 are up to 1.2 times it."""
+    points, weights = np.polynomial.legendre.leggauss(20)
+    for seed in range(40):
+        fun, bc = random_bump(seed)
+        found = solve_bvp(fun, bc, np.linspace(0, 1, 5), np.zeros((2, 5)), tol=tol)
+        assert found.success
+        x = (found.x[:-1, None] + np.diff(found.x)[:, None] * (0.5 + 0.5 * points)).ravel()
+        slope = fun(x, found.sol(x))
+        squares = np.sum(((found.sol(x, 1) - slope) / (1 + np.abs(slope)))**2, axis=0)
+        assert np.sqrt(0.5 * (squares.reshape(-1, 20) @ weights)).max() <= 1.05 * tol, seed  # of nine points
 
 
 def test_unknown_parameters() -> None:
