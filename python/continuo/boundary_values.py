@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -178,10 +178,18 @@ def _checked_singular_term(S: ArrayLike | None, n: int, dtype: Any) -> NDArray[A
 
 
 def _checked_tolerance(name: str, value: float) -> float:
+    if not isinstance(value, (int, float, np.number, np.ndarray)):
+        raise TypeError(f"`{name}` must be a number, and is {value!r}")
     value = float(value)
-    if not value > 0:
-        raise ValueError(f"`{name}` must be positive.")
+    if not 0 < value < inf:
+        raise ValueError(f"`{name}` must be positive and finite, and is {value}")
     return value
+
+
+def _check_functions(**functions: Any) -> None:
+    for name, function in functions.items():
+        if not callable(function) and not isinstance(function, (_continuo.Native, tuple)):
+            raise TypeError(f"`{name}` must be a function, and is {function!r}")
 
 
 def _print_progress(iteration: int, residual: float, condition: float, nodes: int, added: int, exceeds: bool) -> None:
@@ -318,6 +326,8 @@ def solve_bvp(
     True
     """
     fun = with_equations(fun)
+    _check_functions(fun=fun, bc=bc)
+    _check_functions(fun_jac=fun if fun_jac is None else fun_jac, bc_jac=bc if bc_jac is None else bc_jac)
     mesh = _checked_mesh(x)
     guess = _checked_guess(y, mesh.shape[0])
     parameters = _checked_parameters(p, guess.dtype)
@@ -325,6 +335,8 @@ def solve_bvp(
     if tol < 100 * _EPS:
         warnings.warn(f"`tol` is too low, setting to {100 * _EPS:.2e}", stacklevel=2)
         tol = 100 * _EPS
+    if not isinstance(max_nodes, (int, float, np.number)) or not max_nodes >= 0:
+        raise ValueError(f"`max_nodes` must be a number that is not negative, and is {max_nodes!r}")
     if verbose not in [0, 1, 2]:
         raise ValueError("`verbose` must be in [0, 1, 2].")
     if verbose == 2:

@@ -66,24 +66,36 @@ class Event:
 def _stop_after(terminal: Any, name: str) -> int:
     if terminal is None:
         return 0
-    count = int(terminal)
+    try:
+        count = int(terminal)
+    except (TypeError, ValueError, OverflowError):
+        count = -1
     if count < 0 or count != terminal:
         raise ValueError(f"The `terminal` attribute of the event {name} must be a truth value or a positive number.")
     return count
+
+
+def _direction(event: Any, name: str) -> float:
+    try:
+        return float(getattr(event, "direction", None) or 0)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"The `direction` attribute of the event {name} must be a number, and is {event.direction!r}"
+        ) from None
 
 
 def event_fields(events: Any) -> list[EventFields]:
     """Give what a run needs of `events`: one function, an Event, or several of them."""
     if events is None:
         return []
-    given: Sequence[Any] | Iterable[Any] = (events,) if callable(events) else events
+    given: Sequence[Any] | Iterable[Any] = (events,) if callable(events) or not hasattr(events, "__iter__") else events
     fields: list[EventFields] = []
     for i, event in enumerate(given):
         if not callable(event):
             raise TypeError(f"events[{i}] is {event!r}: an event is a function of (t, y) or a continuo.Event")
         named = getattr(event, "name", None) or getattr(getattr(event, "guard", event), "__name__", None)
         name = str(named or f"event {i}")
-        direction = getattr(event, "direction", 0)
+        direction = _direction(event, name)
         stop_after = _stop_after(getattr(event, "terminal", False), name)
         if isinstance(event, Event):
             fields.append((event.guard, direction, stop_after, event.action, event.at_limit, name))

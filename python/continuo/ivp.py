@@ -10,14 +10,22 @@ import numpy.typing as npt
 from . import _continuo
 from .dense import OdeSolution
 from .errors import Interrupted
-from .options import PatternGrew, method_of, run_settings, state_of, warn_extraneous
+from .options import PatternGrew, method_of, numbers, run_settings, state_of, warn_extraneous
 from .result import OdeResult
 
 Array = npt.NDArray[Any]
 
 
+def _interval(t_span: Any) -> tuple[float, float]:
+    try:
+        t0, t1 = t_span
+        return float(t0), float(t1)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"`t_span` must be two numbers, the beginning and the end, and is {t_span!r}") from None
+
+
 def _times(t_eval: Any, t0: float, t1: float) -> Array:
-    times = np.asarray(t_eval, dtype=float)
+    times = numbers("t_eval", t_eval)
     if times.ndim != 1:
         raise ValueError("`t_eval` must be 1-dimensional.")
     if np.any(times < min(t0, t1)) or np.any(times > max(t0, t1)) or np.any(np.isnan(times)):
@@ -181,8 +189,7 @@ def solve_ivp(
     Exception
         What a callback raises, with `result` as an attribute.
     """
-    t0, t1 = t_span
-    t0, t1 = float(t0), float(t1)
+    t0, t1 = _interval(t_span)
     chosen = method_of(method)
     if options and not chosen.options.issuperset(options):
         warn_extraneous(options, chosen)

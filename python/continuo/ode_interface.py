@@ -107,6 +107,8 @@ def _scipy_integrator(name: str, given: dict[str, Any]) -> _Integrator:
 
 def _integrator(name: str, given: dict[str, Any]) -> _Integrator | None:
     """None where there is none of this name."""
+    if not isinstance(name, str):
+        raise TypeError(f"an integrator is taken by its name, such as 'dop853', and not by a {type(name).__name__}")
     scipy_name = name.lower() or "vode"
     if scipy_name in _SCIPY_OPTIONS:
         return _scipy_integrator(scipy_name, given)
@@ -210,6 +212,8 @@ class ode:  # noqa: N801  # SciPy's name
             Its time.
         """
         self._y = self._as_state(y)
+        if not isinstance(t, (int, float, np.number)) and np.ndim(t) == 0:
+            raise TypeError(f"the time of the initial value must be a number, and is {t!r}")
         self.t = t
         self._reset()
         return self

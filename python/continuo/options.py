@@ -112,10 +112,32 @@ def state_of(y0: Any) -> Array:
     return np.ascontiguousarray(y, dtype=complex if y.dtype.kind == "c" else float)
 
 
+def numbers(name: str, value: Any) -> Array:
+    """Give what is meant as an array of real numbers as one."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"`{name}` must be numbers, and is {value!r}: {error}") from None
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"`{name}` must be a number, and is {value!r}") from None
+
+
+def _tolerance(name: str, value: Any) -> Array:
+    tolerance = numbers(name, value)
+    if np.any(np.isnan(tolerance)):
+        raise ValueError(f"`{name}` must be numbers, and is {value!r}")
+    return tolerance
+
+
 def tolerances(rtol: Any, atol: Any, n: int, stacklevel: int = 3) -> tuple[Any, Any]:
     """Check the tolerances as SciPy does; each is a number, or one for each component."""
-    if type(rtol) is not float or rtol < LEAST_RTOL:
-        rtol = np.asarray(rtol, dtype=float)
+    if type(rtol) is not float or not rtol >= LEAST_RTOL:
+        rtol = _tolerance("rtol", rtol)
         if np.any(rtol < LEAST_RTOL):
             warn(
                 f"At least one element of `rtol` is too small. Setting `rtol = np.maximum(rtol, {LEAST_RTOL})`.",
@@ -126,8 +148,8 @@ def tolerances(rtol: Any, atol: Any, n: int, stacklevel: int = 3) -> tuple[Any, 
             raise ValueError("`rtol` has wrong shape.")
         if rtol.ndim == 0:
             rtol = float(rtol)
-    if type(atol) is not float or atol < 0:
-        atol = np.asarray(atol, dtype=float)
+    if type(atol) is not float or not atol >= 0:
+        atol = _tolerance("atol", atol)
         if atol.ndim > 0 and atol.shape != (n,):
             raise ValueError("`atol` has wrong shape.")
         if np.any(atol < 0):
@@ -140,26 +162,27 @@ def tolerances(rtol: Any, atol: Any, n: int, stacklevel: int = 3) -> tuple[Any, 
 def _steps(options: dict[str, Any], t0: float, t1: float, extras: dict[str, Any]) -> float:
     first_step = options.get("first_step")
     if first_step is not None:
+        first_step = _number("first_step", first_step)
         if not first_step > 0:
             raise ValueError("`first_step` must be positive.")
         if first_step > abs(t1 - t0):
             raise ValueError("`first_step` exceeds bounds.")
-        extras["first_step"] = float(first_step)
-    max_step = options.get("max_step", np.inf)
+        extras["first_step"] = first_step
+    max_step = _number("max_step", options.get("max_step", np.inf))
     if not max_step > 0:
         raise ValueError("`max_step` must be positive.")
     min_step = options.get("min_step")
     if min_step is not None:
-        if min_step < 0:
+        extras["min_step"] = _number("min_step", min_step)
+        if not extras["min_step"] >= 0:
             raise ValueError("`min_step` must be nonnegative.")
-        extras["min_step"] = float(min_step)
     for name in ("step", "max_steps"):
         value = options.get(name)
         if value is not None:
-            if not value > 0:
+            extras[name] = _number(name, value)
+            if not extras[name] > 0:
                 raise ValueError(f"`{name}` must be positive.")
-            extras[name] = value
-    return float(max_step)
+    return max_step
 
 
 def _is_sparse(matrix: Any) -> bool:
@@ -279,8 +302,10 @@ def _band(options: dict[str, Any], n: int, keeps_sparse: bool, extras: dict[str,
 
 
 def _constant_jacobian(jac: Any, n: int, is_complex: bool, keeps_sparse: bool, extras: dict[str, Any]) -> None:
-    matrix = jac if _is_sparse(jac) else np.asarray(jac, dtype=complex if is_complex else float)
+    matrix = jac if _is_sparse(jac) else np.asarray(jac, dtype=complex) if is_complex else numbers("jac", jac)
     _check_shape(matrix, n, "jac")
+    if not np.all(np.isfinite(matrix.tocoo().data if _is_sparse(matrix) else matrix)):
+        raise ValueError("`jac` must be finite.")
     if _is_sparse(matrix) and keeps_sparse:
         coo = matrix.tocoo()
         entries = SparseJacobian(None, n, coo.row, coo.col)
@@ -322,7 +347,7 @@ def _jacobian(options: dict[str, Any], t0: float, y: Array, args: Any, grown: An
 
 
 def _mass(mass: Any, n: int, is_complex: bool) -> Array | None:
-    matrix = np.asarray(mass.toarray() if _is_sparse(mass) else mass, dtype=float)
+    matrix = numbers("mass", mass.toarray() if _is_sparse(mass) else mass)
     if matrix.shape not in ((n,), (n, n)):
         raise ValueError(f"`mass` must have shape {(n, n)}, or {(n,)} for a diagonal, and has {matrix.shape}.")
     if not np.all(np.isfinite(matrix)):
@@ -347,6 +372,22 @@ def _choose(n: int, rtol: Any, extras: dict[str, Any]) -> str:
     return _continuo.choose_method(n, least, algebraic, "second_order" in extras, sparse, sparse)
 
 
+def _names(given: Any, n: int) -> list[str]:
+    names = list(given) if np.iterable(given) and not isinstance(given, str) else [None]
+    if len(names) != n or not all(isinstance(name, str) for name in names):
+        raise ValueError(f"`names` must be a list of {n} strings, one for each component of y0, and is {given!r}")
+    return names
+
+
+def _pairs(given: Any, n: int) -> list[tuple[int, int]]:
+    pairs = np.asarray(given)
+    if pairs.dtype.kind not in "iu" or pairs.ndim != 2 or pairs.shape[1] != 2 or np.any((pairs < 0) | (pairs >= n)):
+        raise ValueError(
+            f"`pairs` must be pairs of a position and its velocity, by numbers from 0 to {n - 1}, and is {given!r}"
+        )
+    return [(int(position), int(velocity)) for position, velocity in pairs]
+
+
 def _extras(
     method: Method, options: dict[str, Any], t0: float, y: Array, args: Any, grown: Any, extras: dict[str, Any]
 ) -> None:
@@ -359,11 +400,11 @@ def _extras(
     if progress is not None:
         extras["progress"] = progress
     if options.get("names") is not None:
-        extras["names"] = list(options["names"])
+        extras["names"] = _names(options["names"], len(y))
     if options.get("second_order"):
         extras["second_order"] = True
     if options.get("pairs") is not None:
-        extras["pairs"] = [(int(position), int(velocity)) for position, velocity in options["pairs"]]
+        extras["pairs"] = _pairs(options["pairs"], len(y))
     if options.get("mass") is not None:
         mass = _mass(options["mass"], len(y), y.dtype.kind == "c")
         if mass is not None:

@@ -115,7 +115,7 @@ class World:
         self._inner: _Inner = make(_motion_settings(self._settings))
         self._views: list[weakref.ref[Any]] = []
         if gravity is not None:
-            self.gravity = np.asarray(gravity, dtype=np.float64)
+            self.gravity = _numbers("gravity", gravity)
 
     # ---- bodies ----
 
@@ -360,6 +360,8 @@ class World:
         """A spring from body `a` to body `b`, or to a point: stiffness*(distance - rest_length) + damping*its
         rate."""
         if isinstance(b, (int, np.integer)):
+            if a == b:
+                raise ValueError(f"a spring joins two bodies, and both are {a}")
             self._inner.add_spring(_handle(a), _handle(b), None, rest_length, stiffness, damping)
         else:
             self._inner.add_spring(_handle(a), None, _numbers("b", b), rest_length, stiffness, damping)
@@ -418,12 +420,15 @@ class World:
         RuntimeError
             Where the motion cannot go on.
         """
+        t = _number("t", t)
         if not np.isfinite(t) or t < self.time:
             raise ValueError(f"the world is at the time {self.time} and cannot move to {t}")
-        self._inner.advance_to(float(t))
+        self._inner.advance_to(t)
 
     def step(self, h: float | None = None, count: int = 1) -> None:
         """`count` steps of the time h each; without h of that of the fast motion."""
+        if not isinstance(count, (int, np.integer)):
+            raise TypeError(f"count is a whole number, not {count!r}")
         if count < 0:
             raise ValueError(f"count is {count}; steps go forwards")
         size = self._settings["step"] if h is None else float(h)
@@ -580,9 +585,17 @@ def _handle(body: Any) -> int:
 
 
 def _not_negative(name: str, value: float) -> float:
-    if not (np.isfinite(value) and value >= 0):
+    number = _number(name, value)
+    if not (np.isfinite(number) and number >= 0):
         raise ValueError(f"{name} is {value}; it must be 0 or more, and finite")
-    return float(value)
+    return number
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is one number, not {value!r}") from None
 
 
 def _columns(name: str, value: ArrayLike, n: int, width: int) -> Floats:

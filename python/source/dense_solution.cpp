@@ -66,8 +66,7 @@ py::array DenseSolution::operator()(const py::object& t) const {
     dense_.evaluate(piece_at(time), time, static_cast<double*>(result.mutable_data()));
     return result;
   }
-  const auto times = py::array_t < double, py::array::c_style | py::array::forcecast > ::ensure(t);
-  if (!times) throw py::error_already_set();
+  const py::array_t<double, py::array::c_style | py::array::forcecast> times(t);
   if (times.ndim() > 1) throw py::value_error("`t` must be a float or a 1-D array.");
   if (times.ndim() == 0) return (*this)(py::float_(*times.data()));
   const py::ssize_t points = times.shape(0);

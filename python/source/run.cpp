@@ -34,8 +34,7 @@ void read_tolerance(const py::object& given, bool complex, double& one, std::vec
     one = given.cast<double>();
     return;
   }
-  const auto array = py::array_t < double, py::array::c_style | py::array::forcecast > ::ensure(given);
-  if (!array) throw py::error_already_set();
+  const py::array_t<double, py::array::c_style | py::array::forcecast> array(given);
   for (py::ssize_t i = 0; i < array.size(); ++i) {
     each.push_back(array.data()[i]);
     if (complex) each.push_back(array.data()[i]);

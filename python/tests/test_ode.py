@@ -158,6 +158,14 @@ def test_bad_functions(f, error) -> None:
         begun("dop853", f).integrate(1.0)
 
 
+def test_bad_types_of_arguments() -> None:
+    with pytest.raises(TypeError, match="by its name"):
+        ode(lambda t, y: y).set_integrator(5)
+    for time in ("a", None):
+        with pytest.raises(TypeError, match="time of the initial value"):
+            ode(lambda t, y: y).set_initial_value([1.0], time)
+
+
 def test_bad_arguments() -> None:
     with pytest.raises(TypeError, match="no option"):
         ode(turn).set_integrator("dopri5", lband=1)

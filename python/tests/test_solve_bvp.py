@@ -232,7 +232,7 @@ def test_root_of_a_trial_that_is_negative() -> None:
     (lambda x, y: y + 1j, TypeError, "complex"),
     (lambda x: x, TypeError, "positional argument"),
     (lambda x, y: 1 / 0, ZeroDivisionError, "division by zero"),
-    (3, TypeError, "not callable"),
+    (3, TypeError, "must be a function"),
 ])
 def test_bad_functions(function, error, text: str) -> None:
     with pytest.raises(error, match=text):
@@ -254,9 +254,15 @@ def test_bad_shapes_of_other_functions(kept) -> None:
     {"x": [0.0]}, {"x": [0, np.nan, 1, 2, 3]}, {"x": [0, 1, 2, 3, np.inf]}, {"x": [[0, 1, 2, 3, 4]]},
     {"x": [0, 1, 1, 2, 3]}, {"y": np.full((2, 5), np.nan)}, {"y": np.zeros(5)}, {"y": np.zeros((0, 5))},
     {"p": [[1.0]]}, {"p": [np.nan]}, {"S": np.zeros(2)}, {"S": np.full((2, 2), np.nan)}, {"tol": np.nan},
-    {"tol": -1.0}, {"bc_tol": 0.0}, {"verbose": 3}])
+    {"tol": -1.0}, {"tol": np.inf}, {"bc_tol": 0.0}, {"verbose": 3}, {"max_nodes": -1}, {"max_nodes": "a"}])
 def test_bad_arguments(bad) -> None:
     with pytest.raises(ValueError, match="`"):
+        solve_bvp(**{"fun": line, "bc": ends, "x": X, "y": Y, **bad})
+
+
+@pytest.mark.parametrize("bad", [{"fun": None}, {"bc": 3}, {"fun_jac": 3}, {"bc_jac": "a"}, {"tol": None}])
+def test_bad_types_of_arguments(bad) -> None:
+    with pytest.raises(TypeError, match=f"`{list(bad)[0]}` must be"):
         solve_bvp(**{"fun": line, "bc": ends, "x": X, "y": Y, **bad})
 
 

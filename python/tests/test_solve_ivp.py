@@ -268,6 +268,38 @@ def test_options_without_effect_and_wrong_ones() -> None:
     assert not result.success and result.status == -1 and abs(result.t[-1] - 1) < 1e-3
 
 
+@pytest.mark.parametrize("name, value", [
+    ("rtol", "a"), ("rtol", np.nan), ("atol", np.nan), ("atol", None), ("max_step", "a"), ("first_step", "a"),
+    ("min_step", np.nan), ("max_steps", "a"), ("t_eval", ["a"]), ("t_eval", [1j]), ("jac", "a"), ("jac", [[np.nan]]),
+    ("mass", "a"), ("pairs", [(0, -1)]), ("pairs", 3), ("pairs", [(0, 0.5)]), ("names", 3), ("names", [3]),
+    ("names", ["a", "b"]), ("t_span", (0, 1, 2)), ("t_span", 5), ("t_span", (0, "b")), ("t_span", (0, None)),
+])  # fmt: skip
+def test_wrong_values_are_named(name: str, value: Any) -> None:
+    arguments = {"fun": lambda t, y: [-y[0]], "t_span": (0, 1), "y0": [1.0], "method": "BDF", name: value}
+    with pytest.raises((TypeError, ValueError), match=f"`{name}`"):
+        solve_ivp(**arguments)
+
+
+def test_attributes_of_events_that_cannot_be() -> None:
+    for attribute, value in (("terminal", "yes"), ("terminal", np.nan), ("direction", "up"), ("direction", 1j)):
+
+        def event(t: float, y: Any) -> Any:
+            return y[0] - 0.5
+
+        setattr(event, attribute, value)
+        with pytest.raises(ValueError, match=f"`{attribute}` attribute of the event event"):
+            solve_ivp(lambda t, y: [-y[0]], (0, 1), [1.0], events=event)
+    with pytest.raises(TypeError, match="an event is a function"):
+        solve_ivp(lambda t, y: [-y[0]], (0, 1), [1.0], events=3)
+
+
+def test_a_solution_at_what_is_no_time() -> None:
+    solution = solve_ivp(lambda t, y: [-y[0]], (0, 1), [1.0], dense_output=True).sol
+    for time in ("a", ["a"]):
+        with pytest.raises((TypeError, ValueError)):
+            solution(time)
+
+
 def test_progress() -> None:
     seen: list[float] = []
     result = solve_ivp(_decay, (0, 1), [1.0], progress=lambda t, part: seen.append(part))

@@ -219,6 +219,18 @@ def test_all_bodies_of_an_array_or_none() -> None:
     world.advance_to(1.0)
 
 
+def test_numbers_that_are_none() -> None:
+    world = ball()
+    for make in (
+        lambda: World(3, gravity="a"),  # type: ignore[arg-type]
+        lambda: world.advance_to("a"),  # type: ignore[arg-type]
+        lambda: world.set_drag("a"),  # type: ignore[arg-type]
+        lambda: world.step(0.1, 1.5),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(TypeError, match="^(gravity|t|linear|count) is "):
+            make()
+
+
 def test_misuse() -> None:
     world = ball()
     for make in (
@@ -236,6 +248,7 @@ def test_misuse() -> None:
         lambda: world.set_drag(-1),
         lambda: world.set_attraction(np.nan),
         lambda: world.ignore(0, 32),
+        lambda: world.add_spring(int(world.bodies[0]), int(world.bodies[0])),
         lambda: world.advance_to(-1),
         lambda: world.advance_to(np.nan),
         lambda: world.step(-1),
