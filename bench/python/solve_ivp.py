@@ -174,7 +174,12 @@ def main() -> None:
                 form: least_time(lambda f=f: scipy.integrate.solve_ivp(f, span, y0, **options))  # type: ignore[misc]
                 for form, f in functions.items()
             }
-            rows = [("in C, Python", native[name], "list", {}), ("list", functions["list"], "list", {})]
+            traced = continuo.trace(functions["list"], len(y0))
+            rows = [
+                ("in C, Python", native[name], "list", {}),
+                ("traced, Python", traced, "list", {}),
+                ("list", functions["list"], "list", {}),
+            ]
             if "array" in functions:
                 rows.append(("array", functions["array"], "array", {}))
                 rows.append(("array handed over", functions["list"], "list", {"state": "array"}))

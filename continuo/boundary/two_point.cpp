@@ -134,7 +134,7 @@ class TwoPointSearch {
 
   void begin_known(std::size_t nodes) {
     for (auto [known, points] : {std::pair(&known_.nodes, nodes), std::pair(&known_.middles, nodes - 1)})
-      known->f.assign(problem_.size * points, Number{}), known->is_known.assign(points, false);
+      known->f.assign(problem_.size * points, Number{}), known->is_missing.assign(points, true);
   }
   /// The derivatives on the mesh, which the refined one has where it has the points. They are kept where the solution
   /// is so near that it will hardly change.
@@ -170,7 +170,7 @@ class TwoPointSearch {
       keep_jacobians(equations.jacobians(), nodes);
     const auto keep_slope = [n](PartlyKnown<Number>& to, std::size_t point, std::size_t points,
                                 const std::vector<Number>& f, std::size_t from, std::size_t old_points) {
-      to.is_known[point] = true;
+      to.is_missing[point] = false;
       for (std::size_t i = 0; i < n; ++i) to.f[i * points + point] = f[i * old_points + from];
     };
     for (std::size_t k = 0; k < old_nodes; ++k) {

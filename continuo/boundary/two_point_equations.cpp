@@ -64,9 +64,17 @@ TwoPointEquations<Number>::TwoPointEquations(TwoPointFunctions<Number>& function
   for (std::size_t k = 0; k < intervals(); ++k) middles_[k] = x[k] + 0.5 * length(k);
   node_f_.resize(node_y_.size()), middle_f_.resize(middle_y_.size());
   set_nodes(z_);
-  evaluate_unknown(x_, node_y_, known.nodes.is_known, node_f_);
+  if (known.nodes.is_missing.empty()) {
+    known.nodes.is_missing.assign(nodes(), true), known.middles.is_missing.assign(intervals(), true);
+  }
+  functions_.derivative_where(known.nodes.is_missing, x_, node_y_, p(), node_f_);
   set_middles();
-  evaluate_unknown(middles_, middle_y_, known.middles.is_known, middle_f_);
+  has_jacobians_ = functions_.takes_differences();
+  if (has_jacobians_) {
+    take_jacobians(known.middles.is_missing);
+  } else {
+    functions_.derivative_where(known.middles.is_missing, middles_, middle_y_, p(), middle_f_);
+  }
   evaluate_equations(z_);
 }
 
@@ -117,24 +125,6 @@ void TwoPointEquations<Number>::set_residual_points() {
   std::vector<std::size_t> all(intervals());
   std::iota(all.begin(), all.end(), std::size_t{0});
   at_residuals_ = sampled(std::array{0.5 - from_middle, 0.5 + from_middle}, all);
-}
-
-/// f at those of the points x where it is not known already.
-template <class Number>
-void TwoPointEquations<Number>::evaluate_unknown(std::span<const double> x, const std::vector<Number>& y,
-                                                 const std::vector<char>& is_known, std::vector<Number>& f) {
-  if (is_known.empty()) return functions_.derivative(x, y, p(), f);
-  std::vector<std::size_t> unknown;
-  std::vector<double> some_x;
-  for (std::size_t q = 0; q < x.size(); ++q)
-    if (!is_known[q]) unknown.push_back(q), some_x.push_back(x[q]);
-  if (unknown.empty()) return;
-  std::vector<Number> some_y, some_f(n_ * unknown.size());
-  for (std::size_t i = 0; i < n_; ++i)
-    for (const std::size_t q : unknown) some_y.push_back(y[i * x.size() + q]);
-  functions_.derivative(some_x, some_y, p(), some_f);
-  for (std::size_t i = 0, part = 0; i < n_; ++i)
-    for (const std::size_t q : unknown) f[i * x.size() + q] = some_f[part++];
 }
 
 /// f in the middles and at the points of the residual, in one call.
@@ -223,9 +213,10 @@ void TwoPointEquations<Number>::fill_interval(std::size_t k) {
   }
 }
 
-/// The derivatives of f at those of the nodes and middles where they are not known.
+/// The derivatives of f at those of the nodes and middles where they are not known; and f in the middles where it is
+/// missing, empty for nowhere: there its derivatives are not known either.
 template <class Number>
-void TwoPointEquations<Number>::take_jacobians() {
+void TwoPointEquations<Number>::take_jacobians(const std::vector<char>& middle_is_missing) {
   const std::size_t points = nodes() + intervals();
   std::vector<std::size_t> unknown;
   for (std::size_t q = 0; q < points; ++q)
@@ -245,9 +236,15 @@ void TwoPointEquations<Number>::take_jacobians() {
   };
   gather(node_y_, middle_y_, y);
   gather(node_f_, middle_f_, f);
-  if (count == points) return functions_.jacobians(x, y, p(), f, jacobians_);
+  std::vector<char> is_missing;
+  if (!middle_is_missing.empty())
+    for (const std::size_t q : unknown) is_missing.push_back(q % 2 == 1 && middle_is_missing[q / 2]);
   PointJacobians<Number> some;
-  functions_.jacobians(x, y, p(), f, some);
+  functions_.jacobians(x, y, p(), f, is_missing, count == points ? jacobians_ : some);
+  for (std::size_t u = 0; u < is_missing.size(); ++u)
+    for (std::size_t i = 0; is_missing[u] && i < n_; ++i)
+      middle_f_[i * intervals() + unknown[u] / 2] = f[i * count + u];
+  if (count == points) return;
   const std::size_t block = n_ * n_, border = n_ * k_;
   for (std::size_t u = 0; u < count; ++u) {
     std::copy_n(&some.by_y[u * block], block, &jacobians_.by_y[unknown[u] * block]);
@@ -258,7 +255,7 @@ void TwoPointEquations<Number>::take_jacobians() {
 /// False where a derivative is not finite.
 template <class Number>
 bool TwoPointEquations<Number>::fill_matrix() {
-  take_jacobians();
+  if (!std::exchange(has_jacobians_, false)) take_jacobians({});
   const auto at_nodes = this->y();
   const ConditionJacobians<Number>& of_conditions =
       functions_.condition_jacobians(at_nodes.first(n_), at_nodes.last(n_), p(), conditions());

@@ -18,7 +18,7 @@ namespace continuo::boundary {
 template <class Number>
 struct PartlyKnown {
   std::vector<Number> f;
-  std::vector<char> is_known;  // of each point; empty: nowhere
+  std::vector<char> is_missing;  // at each point; empty: at all
 };
 
 /// What is known on a mesh of those before it: f at the nodes and at the middles between them, and the derivatives at
@@ -87,12 +87,10 @@ class TwoPointEquations {
   [[nodiscard]] SplineSamples<Number> sampled(const std::array<double, count>& thetas,
                                               std::span<const std::size_t> intervals) const;
   void set_residual_points();
-  void evaluate_unknown(std::span<const double> x, const std::vector<Number>& y, const std::vector<char>& is_known,
-                        std::vector<Number>& f);
   void evaluate_with_residual_points(std::span<const Number> p);
   void evaluate(const std::vector<Number>& z, bool expects_solution = false);
   void evaluate_equations(const std::vector<Number>& z);
-  void take_jacobians();
+  void take_jacobians(const std::vector<char>& middle_is_missing);
   [[nodiscard]] bool is_solved_by_known(double tolerance, double condition_tolerance);
   bool fill_matrix();
   void fill_interval(std::size_t k);
@@ -111,6 +109,7 @@ class TwoPointEquations {
   std::vector<Number> correction_, simplified_;
   PointJacobians<Number> jacobians_;
   std::vector<char> jacobian_is_known_;  // of the mesh before, for the first correction
+  bool has_jacobians_ = false;           // taken already for the first correction
   AlmostBlockDiagonal<Number> matrix_;
 };
 

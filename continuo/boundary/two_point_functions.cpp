@@ -91,46 +91,58 @@ void TwoPointFunctions<Number>::derivative_on_mesh(std::span<const double> x, Nu
   }
 }
 
-/// Each point once for each component, displaced; and before these as it is, where that costs little and at first:
-/// where f there differs from what it was in other company, its points depend on each other, and only calls as those
-/// for the equations will do. False then.
+/// Each point once for each component, displaced; and before these as it is, where f is not known there, and elsewhere
+/// where that costs little and at first: where f then differs from what it was in other company, its points depend on
+/// each other, and only calls as those for the equations will do. False then.
 template <class Number>
-bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f,
-                                                  std::vector<Number>& by_y) {
+bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f,
+                                                  const std::vector<char>& is_missing_at, std::vector<Number>& by_y) {
   constexpr double rounding = 1e-10;
   constexpr std::size_t few_points = 128;
-  const std::size_t n = size(), as_is = !points_were_compared_ || x.size() <= few_points ? 1 : 0, copies = n + as_is;
-  const std::size_t chunk = std::max<std::size_t>(1, most_numbers_at_once / (n * copies));
+  const std::size_t n = size(), points = x.size();
+  const bool compares = !points_were_compared_ || points <= few_points;
+  const auto is_missing = [&](std::size_t q) { return !is_missing_at.empty() && is_missing_at[q]; };
+  const std::size_t chunk = std::max<std::size_t>(1, most_numbers_at_once / (n * (n + 1)));
   double greatest = 0;
-  for (const Number& slope : f) greatest = std::max(greatest, size_of(slope));
-  auto& [all_x, all_y, all_f] = displaced_;
-  for (std::size_t begin = 0; begin < x.size(); begin += chunk) {
-    const std::size_t count = std::min(chunk, x.size() - begin), all = count * copies;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t q = 0; q < points; ++q)
+      if (!is_missing(q)) greatest = std::max(greatest, size_of(f[i * points + q]));
+  auto& [first, all_x, all_y, all_f] = displaced_;
+  for (std::size_t begin = 0; begin < points; begin += chunk) {
+    const std::size_t count = std::min(chunk, points - begin);
+    first.resize(count + 1);
+    for (std::size_t q = 0; q < count; ++q) first[q + 1] = first[q] + n + (compares || is_missing(begin + q) ? 1 : 0);
+    const std::size_t all = first[count];
     all_x.resize(all), all_y.resize(all * n), all_f.resize(all * n);
     for (std::size_t q = 0; q < count; ++q)
-      for (std::size_t c = 0; c < copies; ++c) all_x[q * copies + c] = x[begin + q];
+      for (std::size_t c = first[q]; c < first[q + 1]; ++c) all_x[c] = x[begin + q];
     for (std::size_t i = 0; i < n; ++i) {
-      const Number* const from = &y[i * x.size() + begin];
+      const Number* const from = &y[i * points + begin];
       Number* const to = &all_y[i * all];
       for (std::size_t q = 0; q < count; ++q) {
-        for (std::size_t c = 0; c < copies; ++c) to[q * copies + c] = from[q];
-        to[q * copies + as_is + i] = displaced(from[q]);
+        for (std::size_t c = first[q]; c < first[q + 1]; ++c) to[c] = from[q];
+        to[first[q + 1] - n + i] = displaced(from[q]);
       }
     }
     derivative(all_x, all_y, p, all_f);
     for (std::size_t i = 0; i < n; ++i) {
-      const Number* const before = &f[i * x.size() + begin];
+      Number* const before = &f[i * points + begin];
       const Number* const found = &all_f[i * all];
-      for (std::size_t q = 0; q < as_is * count; ++q)
-        if (!(size_of(found[q * copies] - before[q]) <= rounding * greatest)) return false;
+      for (std::size_t q = 0; q < count; ++q) {
+        if (is_missing(begin + q)) {
+          before[q] = found[first[q]];
+        } else if (compares && !(size_of(found[first[q]] - before[q]) <= rounding * greatest)) {
+          return false;
+        }
+      }
       for (std::size_t j = 0; j < n; ++j) {
-        const Number* const moved = &all_y[j * all + as_is + j];
-        const Number* const unmoved = &y[j * x.size() + begin];
+        const Number* const moved = &all_y[j * all];
+        const Number* const unmoved = &y[j * points + begin];
         Number* const to = &by_y[begin * n * n + i * n + j];
         bool finite = true;
         for (std::size_t q = 0; q < count; ++q) {
-          const Number inverse = reciprocal(moved[q * copies] - unmoved[q]);
-          const Number slope = (found[q * copies + as_is + j] - before[q]) * inverse;
+          const std::size_t copy = first[q + 1] - n + j;
+          const Number slope = (found[copy] - before[q]) * reciprocal(moved[copy] - unmoved[q]);
           finite = finite && is_finite(slope);
           to[q * n * n] = slope;
         }
@@ -140,6 +152,22 @@ bool TwoPointFunctions<Number>::jacobians_at_once(std::span<const double> x, Num
   }
   points_were_compared_ = true;
   return true;
+}
+
+template <class Number>
+void TwoPointFunctions<Number>::derivative_where(const std::vector<char>& is_missing_at, std::span<const double> x,
+                                                 Numbers y, Numbers p, std::span<Number> f) {
+  std::vector<std::size_t> unknown;
+  std::vector<double> some_x;
+  for (std::size_t q = 0; q < is_missing_at.size(); ++q)
+    if (is_missing_at[q]) unknown.push_back(q), some_x.push_back(x[q]);
+  if (unknown.empty()) return;
+  std::vector<Number> some_y, some_f(size() * unknown.size());
+  for (std::size_t i = 0; i < size(); ++i)
+    for (const std::size_t q : unknown) some_y.push_back(y[i * x.size() + q]);
+  derivative(some_x, some_y, p, some_f);
+  for (std::size_t i = 0, part = 0; i < size(); ++i)
+    for (const std::size_t q : unknown) f[i * x.size() + q] = some_f[part++];
 }
 
 template <class Number>
@@ -203,12 +231,13 @@ void TwoPointFunctions<Number>::given_jacobians(std::span<const double> x, Numbe
 }
 
 template <class Number>
-void TwoPointFunctions<Number>::jacobians(std::span<const double> x, Numbers y, Numbers p, Numbers f,
-                                          PointJacobians<Number>& result) {
+void TwoPointFunctions<Number>::jacobians(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f,
+                                          const std::vector<char>& is_missing_at, PointJacobians<Number>& result) {
   result.by_y.resize(y.size() * size());
   result.by_p.resize(y.size() * parameters());
+  if (takes_differences()) points_are_independent_ = jacobians_at_once(x, y, p, f, is_missing_at, result.by_y);
+  if (!takes_differences()) derivative_where(is_missing_at, x, y, p, f);
   if (problem_.derivative_jacobian) return given_jacobians(x, y, p, result);
-  if (points_are_independent_) points_are_independent_ = jacobians_at_once(x, y, p, f, result.by_y);
   if (!points_are_independent_) jacobians_by_component(x, y, p, f, result.by_y);
   parameter_jacobians(x, y, p, f, result.by_p);
 }

@@ -36,10 +36,16 @@ class TwoPointFunctions {
   [[nodiscard]] std::size_t parameters() const { return problem_.parameters; }
   /// f, with the singular term, at the points x.
   void derivative(std::span<const double> x, std::span<const Number> y, std::span<const Number> p, std::span<Number> f);
+  /// The same at those points alone where f is missing.
+  void derivative_where(const std::vector<char>& is_missing, std::span<const double> x, std::span<const Number> y,
+                        std::span<const Number> p, std::span<Number> f);
   /// Its derivatives at the points x, where it is f. The points are those of a mesh and the middles between them, or
-  /// some of them where points do not depend on each other.
-  void jacobians(std::span<const double> x, std::span<const Number> y, std::span<const Number> p,
-                 std::span<const Number> f, PointJacobians<Number>& result);
+  /// some of them where points do not depend on each other. f is written where it is missing: differences come with it
+  /// in one call. `is_missing` is empty where it is at no point.
+  void jacobians(std::span<const double> x, std::span<const Number> y, std::span<const Number> p, std::span<Number> f,
+                 const std::vector<char>& is_missing, PointJacobians<Number>& result);
+  /// Whether derivatives are differences that are taken at all points in one call.
+  [[nodiscard]] bool takes_differences() const { return !problem_.derivative_jacobian && points_are_independent_; }
   /// The residuals of the conditions.
   void conditions(std::span<const Number> y_first, std::span<const Number> y_last, std::span<const Number> p,
                   std::span<Number> residuals) const {
@@ -57,7 +63,8 @@ class TwoPointFunctions {
   using Numbers = std::span<const Number>;
   void add_singular_term(std::span<const double> x, Numbers y, std::span<Number> f) const;
   void given_jacobians(std::span<const double> x, Numbers y, Numbers p, PointJacobians<Number>& result);
-  bool jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
+  bool jacobians_at_once(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f,
+                         const std::vector<char>& is_missing, std::vector<Number>& by_y);
   void jacobians_by_component(std::span<const double> x, Numbers y, Numbers p, Numbers f, std::vector<Number>& by_y);
   void derivative_on_mesh(std::span<const double> x, Numbers y, Numbers p, std::span<Number> f);
   [[nodiscard]] bool foretold(Numbers arguments, Numbers residuals) const;
@@ -70,6 +77,7 @@ class TwoPointFunctions {
   bool points_are_independent_ = true, points_were_compared_ = false;
   ConditionJacobians<Number> condition_jacobians_;
   struct {
+    std::vector<std::size_t> begin;  // of the copies of each point
     std::vector<double> x;
     std::vector<Number> y, f;
   } displaced_;  // the points of differences, kept as memory for the next ones
