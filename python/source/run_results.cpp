@@ -193,7 +193,9 @@ namespace {
                                    double max_step, const py::object& times, bool dense, const py::object& arguments,
                                    const py::dict& extras) {
   std::unique_ptr<Run> run = make_run(fun, t0, t1, y0, method, rtol, atol, max_step, times, dense, arguments, extras);
-  const py::object error = run->run();
+  Run* const running = run.release();  // a thread that the end of the interpreter unwinds here must not destroy it
+  const py::object error = running->run();
+  run.reset(running);
   const py::tuple summary = run->summary();
   const py::array reached = run->times(), states = run->states();
   const bool ends_here = error.is_none() && !dense && !extras.contains("events");
