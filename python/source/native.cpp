@@ -107,9 +107,9 @@ template <class Function>
 
 [[nodiscard]] Native of_numba(py::handle f) {
   std::size_t arguments = 4;
-  if (py::hasattr(f, "_sig")) {
-    arguments = py::len(f.attr("_sig").attr("args"));
-    if (arguments != 3 && arguments != 4) refuse("of numba", py::str(f.attr("_sig")).cast<std::string>());
+  if (const py::object signature = py::getattr(f, "_sig", py::none()); !signature.is_none()) {
+    arguments = py::len(signature.attr("args"));
+    if (arguments != 3 && arguments != 4) refuse("of numba", py::str(signature).cast<std::string>());
   }
   return native_at(f.attr("address").cast<std::uintptr_t>(), arguments, nullptr, f);
 }
@@ -150,6 +150,7 @@ std::optional<Native> native_of(py::handle f, py::handle arguments) {
   if (PyTuple_Check(f.ptr()) && has_base(Py_TYPE(f.ptr()), "LowLevelCallable", "scipy"))
     return of_low_level_callable(f);
   if (has_base(Py_TYPE(f.ptr()), "CFuncPtr", "_ctypes")) return of_ctypes(f);
+  if (has_base(Py_TYPE(f.ptr()), "CFunc", "numba")) return of_numba(f);
   if (const py::object make = py::getattr(f, "__continuo_native__", py::none());
       !make.is_none() && !PyType_Check(f.ptr()))
     return of_protocol(f, make, arguments);
