@@ -20,10 +20,11 @@ struct MovingBody {
   Orientation<Real, Dim> orientation = upright<Real, Dim>();  // at time 0
   Vector<Real, Dim> velocity{};                               // of the centre
   Spin<Real, Dim> spin{};                                     // in radians per time
+  Matrix<Real, Dim> axes = identity_matrix<Real, Dim>();      // of the shape, in the frame that has the orientation
 
   /// Where it is at a time.
   [[nodiscard]] Pose<Real, Dim> at(const Real& time) const {
-    return {position + velocity * time, rotation(turned(orientation, spin, time))};
+    return {position + velocity * time, rotation(turned(orientation, spin, time)) * axes};
   }
 };
 
