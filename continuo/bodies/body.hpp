@@ -1,5 +1,5 @@
 // continuo/bodies/body.hpp
-// The definition of a body: shape, initial state, mass and material, with defaults that make a ball.
+// The definition of a body: shape (shapes/shape.hpp), initial state, mass and material, with defaults that make a ball.
 #pragma once
 #include <cstdint>
 #include <numbers>
@@ -7,17 +7,9 @@
 #include <variant>
 
 #include <continuo/numerics/vector.hpp>
+#include <continuo/shapes/shape.hpp>
 
 namespace continuo {
-
-/// A ball in space, a disc in the plane. You choose the units; all lengths must be in the same one.
-template <class Real>
-struct Sphere {
-  Real radius = Real(0.5);  // in the unit of length of the world
-};
-/// The shapes of bodies: spheres so far. Boxes, capsules and hulls are planned.
-template <class Real, int Dim>
-using Shape = std::variant<Sphere<Real>>;
 
 /// The contact parameters of a surface. The `CombineRule` of the world combines those of two surfaces in contact.
 template <class Real>
@@ -66,12 +58,39 @@ template <class Real>
           combined(combine_rule.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
 }
 
+/// The directions in which a body is held, whatever pushes it: bits that are joined by |. In the plane, z is of no
+/// meaning but for turns, which are about z.
+enum class Locked : std::uint8_t { none = 0, x = 1, y = 2, z = 4, turn_x = 8, turn_y = 16, turn_z = 32 };
+[[nodiscard]] constexpr Locked operator|(Locked a, Locked b) {
+  return static_cast<Locked>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+/// Whether all of b are among a.
+[[nodiscard]] constexpr bool has(Locked a, Locked b) {
+  return (static_cast<unsigned>(a) & static_cast<unsigned>(b)) == static_cast<unsigned>(b);
+}
+
+/// What few bodies need. The fast motion knows all of it, the exact motion only `user_data`.
+template <class Real>
+struct BodyTraits {
+  bool is_driven = false;                  // of a fixed body: moves with its velocity and spin, whatever meets it
+  bool is_sensor = false;                  // pushes nothing, but has contact events, with an impulse of 0
+  Locked locked = Locked::none;            // directions in which it is held
+  Real gravity_scale = Real(1);            // times the gravity of the world
+  Real damping = Real(0);                  // of the velocity, per time: dv/dt = -damping v
+  Real spin_damping = Real(0);             // of the spin, likewise
+  std::uint64_t category = 1;              // bits; two bodies collide where each has a bit of the other's mask,
+  std::uint64_t mask = ~std::uint64_t{0};  // and the rules for their groups allow it
+  std::uint64_t user_data = 0;             // of your own
+  /// Whether all are equal.
+  friend bool operator==(const BodyTraits&, const BodyTraits&) = default;
+};
+
 /// A body to be added to a world. Lengths, masses and times are in the units of the world.
 template <class Real, int Dim>
 struct BodyDefinition {
   Shape<Real, Dim> shape = Sphere<Real>{};                    // by default a radius of 0.5
-  Vector<Real, Dim> position{};                               // of the centre
-  Vector<Real, Dim> velocity{};                               // of the centre
+  Vector<Real, Dim> position{};                               // of the origin of the shape, of balls the centre
+  Vector<Real, Dim> velocity{};                               // of the centre of mass
   Orientation<Real, Dim> orientation = upright<Real, Dim>();  // an angle in the plane, a unit quaternion in space
   Spin<Real, Dim> spin{};                                     // the angular velocity, in radians per time
   std::optional<Real> mass{};                                 // default: density times volume (area in the plane)
@@ -79,6 +98,7 @@ struct BodyDefinition {
   bool fixed = false;                                         // never moves, whatever meets it
   Material<Real> material{};                                  // of its surface
   std::uint32_t group = 0;                                    // below 32; see World::ignore
+  BodyTraits<Real> traits{};                                  // what few bodies need
 };
 
 /// Identifies a body until it is removed. The generation tells the handle of a removed body from that of a later body

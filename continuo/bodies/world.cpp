@@ -1,5 +1,6 @@
 // continuo/bodies/world.cpp
 // Adds, checks and removes bodies, walls and springs, and sums up momenta and energies.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -23,6 +24,15 @@ bool is_part(const Real& value) {
   return value >= Real(0) && value < std::numeric_limits<Real>::infinity();
 }
 
+template <class Real>
+Status check_traits(const BodyTraits<Real>& traits) {
+  if (!is_part(traits.damping) || !is_part(traits.spin_damping))
+    return invalid_input("damping must be 0 or more, and finite");
+  if (!(traits.gravity_scale - traits.gravity_scale == Real(0))) return invalid_input("gravity_scale must be finite");
+  if (static_cast<unsigned>(traits.locked) > 63) return invalid_input("unknown directions are locked");
+  return {};
+}
+
 template <class Real, int Dim>
 Status check(const BodyDefinition<Real, Dim>& definition) {
   const auto* sphere = std::get_if<Sphere<Real>>(&definition.shape);
@@ -35,7 +45,29 @@ Status check(const BodyDefinition<Real, Dim>& definition) {
   if (definition.mass ? !is_positive(*definition.mass) : !is_positive(definition.density))
     return invalid_input("mass and density must be greater than 0, and finite; `fixed` is for bodies that never move");
   if (definition.group >= 32) return invalid_input("groups are numbered from 0 to 31");
+  if (Status fault = check_traits(definition.traits); !fault) return fault;
   return check(definition.material);
+}
+
+template <class Real>
+struct Geometry {
+  Real reach{}, volume{}, inertia{};  // of a mass of 1
+};
+template <class Real, int Size>
+Real mean_of_diagonal(const Matrix<Real, Size>& a) {
+  Real sum(0);
+  for (std::size_t i = 0; i < a.columns.size(); ++i) sum += a[i][i];
+  return sum / static_cast<Real>(Size);
+}
+
+/// The angular momentum about the centre of mass of body i.
+template <class Real, int Dim>
+Spin<Real, Dim> momentum_of_spin(const World<Real, Dim>& world, std::size_t i) {
+  if (Dim == 2 || !world.solid(i)) return world.spin[i] * (1 / world.inverse_inertia[i]);
+  if constexpr (Dim == 3) {
+    const Matrix<Real, 3> axes = rotation(world.orientation[i]);
+    return axes * (world.inertia(i) * transposed_times(axes, world.spin[i]));
+  }
 }
 
 }  // namespace
@@ -71,9 +103,18 @@ Status check_bodies(const World<Real, Dim>& world) {
 template <class Real, int Dim>
 Result<BodyHandle> World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
   if (Status fault = check(definition); !fault) return fault;
-  const auto& sphere = std::get<Sphere<Real>>(definition.shape);
-  const Real m = definition.mass ? *definition.mass : definition.density * volume<Real, Dim>(sphere);
-  const Real j = inertia<Real, Dim>(sphere, m);
+  std::shared_ptr<const Solid<Real, Dim>> of_shape;
+  Geometry<Real> geometry;
+  if (const auto* const sphere = std::get_if<Sphere<Real>>(&definition.shape)) {
+    geometry = {sphere->radius, volume<Real, Dim>(*sphere), continuo::inertia<Real, Dim>(*sphere, Real(1))};
+  } else {
+    auto made = solid_of(definition.shape);
+    if (!made) return made.status();
+    of_shape = *made;
+    geometry = {of_shape->reach, of_shape->volume, mean_of_diagonal(of_shape->inertia)};
+  }
+  const Real m = definition.mass ? *definition.mass : definition.density * geometry.volume;
+  const Real j = m * geometry.inertia;
   if (!is_positive(m) || !is_positive(j) || !is_positive(1 / m) || !is_positive(1 / j))
     return invalid_input("mass or moment of inertia is beyond the numbers: the body is too small or too large");
 
@@ -85,21 +126,61 @@ Result<BodyHandle> World<Real, Dim>::add(const BodyDefinition<Real, Dim>& defini
     free_slots_.pop_back();
   }
   slots_[slot].index = static_cast<std::uint32_t>(size());
-  position.push_back(definition.position);
-  velocity.push_back(definition.fixed ? V{} : definition.velocity);
+  const bool is_still = definition.fixed && !definition.traits.is_driven;
+  velocity.push_back(is_still ? V{} : definition.velocity);
   constant_force.emplace_back();
   O turned_by = definition.orientation;
   if constexpr (Dim == 3) turned_by *= 1 / length(turned_by);
   orientation.push_back(turned_by);
-  spin.push_back(definition.fixed ? S{} : definition.spin);
-  radius.push_back(sphere.radius);
+  position.push_back(of_shape ? V(definition.position + rotation(turned_by) * of_shape->centre) : definition.position);
+  spin.push_back(is_still ? S{} : definition.spin);
+  radius.push_back(geometry.reach);
   mass.push_back(m);
   inverse_mass.push_back(definition.fixed ? Real(0) : 1 / m);
   inverse_inertia.push_back(definition.fixed ? Real(0) : 1 / j);
   material.push_back(definition.material);
   group_.push_back(definition.group);
   slot_of_.push_back(slot);
+  if (of_shape || !solids_.empty()) keep_solid(std::move(of_shape));
+  if (!traits_.empty() || definition.traits != BodyTraits<Real>{}) {
+    traits_.resize(size());
+    traits_.back() = definition.traits;
+  }
   return BodyHandle{slot, slots_[slot].generation};
+}
+
+template <class Real, int Dim>
+void World<Real, Dim>::keep_solid(std::shared_ptr<const Solid<Real, Dim>> of_last) {
+  solids_.resize(size());
+  solid_count_ += of_last ? 1 : 0;
+  solids_.back() = std::move(of_last);
+}
+
+template <class Real, int Dim>
+Result<std::shared_ptr<const Solid<Real, Dim>>> World<Real, Dim>::solid_of(const Shape<Real, Dim>& shape) const {
+  // Bodies are often added in rows of the same shape, which they share.
+  constexpr std::size_t most_compared = 8;
+  for (std::size_t k = 0; k < std::min(most_compared, solids_.size()); ++k)
+    if (const auto& earlier = solids_[solids_.size() - 1 - k]; earlier && earlier->shape == shape) return earlier;
+  auto made = continuo::solid<Real, Dim>(shape);
+  if (!made) return made.status();
+  return std::make_shared<const Solid<Real, Dim>>(std::move(*made));
+}
+
+template <class Real, int Dim>
+Status World<Real, Dim>::set_traits(BodyHandle body, const BodyTraits<Real>& traits) {
+  if (!contains(body)) return invalid_input("the world does not contain this body");
+  if (Status fault = check_traits(traits); !fault) return fault;
+  traits_.resize(size());
+  traits_[index(body)] = traits;
+  return {};
+}
+
+template <class Real, int Dim>
+Inertia<Real, Dim> World<Real, Dim>::inertia(std::size_t i) const {
+  if (const Solid<Real, Dim>* const of_body = solid(i)) return of_body->inertia * mass[i];
+  const Real of_ball = continuo::inertia<Real, Dim>(Sphere<Real>{radius[i]}, mass[i]);
+  return identity_matrix<Real, Dim == 2 ? 1 : 3>() * (inverse_inertia[i] > Real(0) ? 1 / inverse_inertia[i] : of_ball);
 }
 
 template <class Real, int Dim>
@@ -114,6 +195,14 @@ bool World<Real, Dim>::remove(BodyHandle body) {
     values[i] = values[last];
     values.pop_back();
   });
+  if (!solids_.empty()) {
+    solid_count_ -= solids_[i] ? 1 : 0;
+    solids_[i] = std::move(solids_[last]);
+    solids_.pop_back();
+  }
+  if (!traits_.empty()) traits_[i] = traits_[last], traits_.pop_back();
+  for (const JointHandle joint : joints())
+    if (find(joint)->a == body || find(joint)->b == body) remove(joint);
   return true;
 }
 
@@ -129,6 +218,11 @@ World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) c
   copy(some.orientation, orientation), copy(some.spin, spin), copy(some.radius, radius), copy(some.mass, mass);
   copy(some.inverse_mass, inverse_mass), copy(some.inverse_inertia, inverse_inertia), copy(some.material, material);
   copy(some.group_, group_);
+  if (has_traits()) copy(some.traits_, traits_);
+  if (has_solids()) {
+    copy(some.solids_, solids_);
+    for (const auto& of_body : some.solids_) some.solid_count_ += of_body ? 1 : 0;
+  }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) some.slot_of_.push_back(i), some.slots_.push_back({.index = i});
   return some;
 }
@@ -167,8 +261,8 @@ Real kinetic_energy(const World<Real, Dim>& world) {
   for (std::size_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
     detail::add_compensated(
-        Real(squared(world.velocity[i]) / world.inverse_mass[i] + squared(world.spin[i]) / world.inverse_inertia[i]),
-        sum, rest);
+        Real(squared(world.velocity[i]) / world.inverse_mass[i] + dot(world.spin[i], momentum_of_spin(world, i))), sum,
+        rest);
   }
   return sum / 2;
 }
@@ -186,7 +280,7 @@ Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world) {
   for (std::size_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
     sum += moment(world.position[i], world.mass[i] * world.velocity[i]);
-    sum += world.spin[i] * (1 / world.inverse_inertia[i]);
+    sum += momentum_of_spin(world, i);
   }
   return sum;
 }

@@ -1,6 +1,6 @@
 // continuo/bodies/world.hpp
-// The state of a system of bodies at an instant: bodies, walls, springs and other forces. A world is a value, and a
-// copy of it is a snapshot.
+// The state of a system of bodies at an instant: bodies, walls, joints, springs and other forces. A world is a value,
+// and a copy of it is a snapshot.
 //
 //   World<double, 3> world;
 //   world.gravity = {{0, 0, -9.81}};
@@ -15,12 +15,15 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
 #include <continuo/bodies/body.hpp>
+#include <continuo/bodies/joint.hpp>
+#include <continuo/shapes/solid.hpp>
 #include <continuo/status/result.hpp>
 
 namespace continuo {
@@ -119,7 +122,14 @@ class World {
   std::vector<ForceLaw<Real, Dim>> force_laws;    // of your own
   std::vector<TorqueLaw<Real, Dim>> torque_laws;  // of your own
   CombineRule combine_rule{};                     // of the materials of any two surfaces
-  Real time = Real(0);                            // of the present state
+
+  // Rules of your own for the fast motion, by the indices of two bodies; called once for each pair and step, by one
+  // thread. Where the first one returns false, the two do not collide as long as they stay near each other. Where the
+  // second one does, a contact that the two have in this step does not push: its normal is from a to b.
+  std::function<bool(const World& world, std::size_t a, std::size_t b)> may_collide{};
+  std::function<bool(const World& world, std::size_t a, std::size_t b, const V& normal)> may_push{};
+
+  Real time = Real(0);  // of the present state
 
   /// Fails for a body without size or mass, or with a number that is not finite; the message says how to correct it.
   /// Amortised O(1).
@@ -149,6 +159,31 @@ class World {
   /// All walls, in the order in which they were added.
   [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
+  /// Adds a joint between bodies that are where it is to hold them. Fails for a body that does not exist, for a joint
+  /// of a body with itself, and for places, axes, limits, springs or motors that make no sense.
+  Result<JointHandle> add(const JointDefinition<Real, Dim>& definition);
+  /// False where the world has no such joint. Joints go with their bodies.
+  bool remove(JointHandle handle);
+  /// Whether the joint exists.
+  [[nodiscard]] bool contains(JointHandle handle) const {
+    return handle.slot < joints_.size() && joints_[handle.slot].generation == handle.generation &&
+           joints_[handle.slot].is_used;
+  }
+  /// The joint, whose limits, spring, motor, target and strength may be changed; null where the world has no such
+  /// joint.
+  /// @{
+  [[nodiscard]] Joint<Real, Dim>* find(JointHandle handle) {
+    return contains(handle) ? &joints_[handle.slot].joint : nullptr;
+  }
+  [[nodiscard]] const Joint<Real, Dim>* find(JointHandle handle) const {
+    return contains(handle) ? &joints_[handle.slot].joint : nullptr;
+  }
+  /// @}
+  /// The handles of all joints, in the order of their slots. O(joints).
+  [[nodiscard]] std::vector<JointHandle> joints() const;
+  /// The number of joints.
+  [[nodiscard]] std::size_t joint_count() const { return joint_count_; }
+
   /// From now on, bodies of groups a and b do not collide. Fails for a group that does not exist.
   [[nodiscard]] Status ignore(std::uint32_t a, std::uint32_t b) {
     if (a >= ignored_.size() || b >= ignored_.size()) return invalid_input("groups are numbered from 0 to 31");
@@ -162,8 +197,19 @@ class World {
   [[nodiscard]] bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
   /// Whether bodies i and j may collide: their groups do not ignore each other, and one of them can move.
   [[nodiscard]] bool collide(std::size_t i, std::size_t j) const {
+    if (!traits_.empty() &&
+        ((traits_[i].category & traits_[j].mask) == 0 || (traits_[j].category & traits_[i].mask) == 0))
+      return false;
     return (ignored_[group_[i]] >> group_[j] & 1u) == 0 && (inverse_mass[i] > 0 || inverse_mass[j] > 0);
   }
+  /// What few bodies need, of body i.
+  [[nodiscard]] BodyTraits<Real> traits(std::size_t i) const {
+    return traits_.empty() ? BodyTraits<Real>{} : traits_[i];
+  }
+  /// Fails where the world has no such body, or for values that make no sense.
+  [[nodiscard]] Status set_traits(BodyHandle body, const BodyTraits<Real>& traits);
+  /// Whether a body has other traits than by default.
+  [[nodiscard]] bool has_traits() const { return !traits_.empty(); }
 
   /// The number of bodies.
   [[nodiscard]] std::size_t size() const { return position.size(); }
@@ -180,15 +226,15 @@ class World {
   }
 
   // By index: body i has position[i] and so on. An index is valid until a body is removed, a handle for ever.
-  std::vector<V> position;               // of centres
-  std::vector<V> velocity;               // of centres
+  std::vector<V> position;               // of centres of mass
+  std::vector<V> velocity;               // of centres of mass
   std::vector<V> constant_force;         // at the centre
   std::vector<O> orientation;            // an angle in the plane, a unit quaternion in space
   std::vector<S> spin;                   // the angular velocity, in radians per time
-  std::vector<Real> radius;              // in the unit of length
+  std::vector<Real> radius;              // of balls; of other bodies, the greatest distance of a point from the centre
   std::vector<Real> mass;                // in the unit of mass
   std::vector<Real> inverse_mass;        // 0 of fixed bodies
-  std::vector<Real> inverse_inertia;     // 0 of fixed bodies
+  std::vector<Real> inverse_inertia;     // 0 of fixed bodies; in space, of bodies that are not balls, of the mean
   std::vector<Material<Real>> material;  // of surfaces
 
   /// The centre of a body; not a number where the world has no such body.
@@ -199,6 +245,23 @@ class World {
   [[nodiscard]] V velocity_of(BodyHandle body) const {
     return contains(body) ? velocity[index(body)] : nowhere_at_all();
   }
+  /// The geometry of body i; null of a ball, which has its radius.
+  [[nodiscard]] const Solid<Real, Dim>* solid(std::size_t i) const {
+    return i < solids_.size() ? solids_[i].get() : nullptr;
+  }
+  /// The same, to be kept beyond the life of the world.
+  [[nodiscard]] std::shared_ptr<const Solid<Real, Dim>> shared_solid(std::size_t i) const {
+    return i < solids_.size() ? solids_[i] : nullptr;
+  }
+  /// Whether there is a body that is not a ball.
+  [[nodiscard]] bool has_solids() const { return solid_count_ > 0; }
+  /// Where the origin of the shape of body i is: of balls the centre.
+  [[nodiscard]] V origin(std::size_t i) const {
+    const Solid<Real, Dim>* const of_body = solid(i);
+    return of_body ? V(position[i] - rotation(orientation[i]) * of_body->centre) : position[i];
+  }
+  /// The moment of inertia of body i about its centre of mass, in the frame of its shape, as if it could move.
+  [[nodiscard]] Inertia<Real, Dim> inertia(std::size_t i) const;
   /// Whether body i is fixed.
   [[nodiscard]] bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
@@ -220,11 +283,24 @@ class World {
         act(self.group_), act(self.slot_of_);
   }
 
+  struct JointSlot {
+    Joint<Real, Dim> joint{};
+    std::uint32_t generation = 1;
+    bool is_used = false;
+  };
+  void keep_solid(std::shared_ptr<const Solid<Real, Dim>> of_last);
+  [[nodiscard]] Result<std::shared_ptr<const Solid<Real, Dim>>> solid_of(const Shape<Real, Dim>& shape) const;
+
   std::vector<std::uint32_t> group_, slot_of_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<Wall<Real, Dim>> walls_;
   std::array<std::uint32_t, 32> ignored_{};
+  std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;  // none, or one for each body, null of a ball
+  std::vector<BodyTraits<Real>> traits_;                         // none, or one for each body
+  std::size_t solid_count_ = 0;                                  // of those that are not null
+  std::vector<JointSlot> joints_;
+  std::size_t joint_count_ = 0;
 };
 
 /// Fails where the fields of a world contradict each other: a radius or a mass that is not above 0, an inverse mass

@@ -115,7 +115,7 @@ TEST(BoundsTree, OverlapsAreAllFound) {
 /// The fraction at which a sweep enters bounds that are grown by `margin`, in a wider format; infinity where it never
 /// does.
 template <class Real, int Dim>
-long double entry_of(const Sweep<Real, Dim>& sweep, const Bounds<Real, Dim>& box, long double margin) {
+long double entry_of(const BoxSweep<Real, Dim>& sweep, const Bounds<Real, Dim>& box, long double margin) {
   long double from = 0, to = static_cast<long double>(sweep.end);
   if (is_empty(box)) return infinity<long double>;
   for (std::size_t axis = 0; axis < sweep.way.size(); ++axis) {
@@ -131,9 +131,9 @@ long double entry_of(const Sweep<Real, Dim>& sweep, const Bounds<Real, Dim>& box
 }
 
 template <class Real, int Dim>
-Sweep<Real, Dim> random_sweep(std::mt19937& engine) {
+BoxSweep<Real, Dim> random_sweep(std::mt19937& engine) {
   std::uniform_real_distribution<Real> uniform(-2, 2);
-  Sweep<Real, Dim> sweep;
+  BoxSweep<Real, Dim> sweep;
   Vector<Real, Dim> x;
   for (std::size_t axis = 0; axis < x.size(); ++axis) {
     x[axis] = uniform(engine);
@@ -155,7 +155,7 @@ void ways_meet_what_they_should() {
     const Kind kind = k % 2 == 0 ? Kind::uniform : k % 4 == 1 ? Kind::six_decades : Kind::empty;
     const auto set = random_set<Real, Dim>(engine, kind, 30);
     const BoundsTree<Real, Dim> tree(set);
-    const Sweep<Real, Dim> sweep = random_sweep<Real, Dim>(engine);
+    const BoxSweep<Real, Dim> sweep = random_sweep<Real, Dim>(engine);
     std::vector<int> visits(set.size(), 0);
     tree.for_each_on_way(sweep, [&](std::uint32_t leaf, Real fraction) {
       ++visits[leaf];
@@ -193,7 +193,7 @@ TEST(BoundsTree, AWayThatNobodyKnowsMeetsAll) {
   std::mt19937 engine(3);
   const auto set = random_set<float, 3>(engine, Kind::uniform, 50);
   const BoundsTree<float, 3> tree(set);
-  const auto met = [&](const Sweep<float, 3>& sweep) {
+  const auto met = [&](const BoxSweep<float, 3>& sweep) {
     std::size_t count = 0;
     tree.for_each_on_way(sweep, [&](std::uint32_t, float) {
       ++count;

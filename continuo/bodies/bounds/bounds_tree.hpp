@@ -68,7 +68,7 @@ class BoundsTree {
   /// their bounds, to rounding. The visitor returns the fraction up to which the box still moves: less than before to
   /// shorten its way, below 0 to end the search. Of two nodes the one that is entered first is searched first.
   template <class Visit>
-  void for_each_on_way(const Sweep<Real, Dim>& sweep, Visit&& visit) const;
+  void for_each_on_way(const BoxSweep<Real, Dim>& sweep, Visit&& visit) const;
 
  private:
   static constexpr std::size_t deepest = 63;
@@ -257,7 +257,7 @@ void BoundsTree<Real, Dim>::for_each_pair_with(const BoundsTree& other, Visit&& 
 
 template <class Real, int Dim>
 template <class Visit>
-void BoundsTree<Real, Dim>::for_each_on_way(const Sweep<Real, Dim>& sweep, Visit&& visit) const {
+void BoundsTree<Real, Dim>::for_each_on_way(const BoxSweep<Real, Dim>& sweep, Visit&& visit) const {
   struct Entered {
     std::uint32_t node;
     Real fraction;

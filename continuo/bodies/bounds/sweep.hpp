@@ -2,7 +2,7 @@
 // Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986: the bounds are grown by the box, which becomes a point, and are
 // the intersection of slabs).
 //
-//   const Sweep<double, 3> ray{.begin = {x, x}, .way = direction, .end = infinity};
+//   const BoxSweep<double, 3> ray{.begin = {x, x}, .way = direction, .end = infinity};
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace continuo {
 
 /// A box that moves by `way` times a fraction that grows from 0 to `end`. A ray is the sweep of a point.
 template <class Real, int Dim>
-struct Sweep {
+struct BoxSweep {
   Bounds<Real, Dim> begin{};        // the box before it moves
   Vector<Real, Dim> way{};          // may be 0
   Real end = static_cast<Real>(1);  // the greatest fraction; infinity for a ray without end
@@ -28,7 +28,7 @@ template <class Real, int Dim>
 class SweepSlabs {
  public:
   /// Prepares a sweep.
-  explicit SweepSlabs(const Sweep<Real, Dim>& sweep) : begin_(sweep.begin) {
+  explicit SweepSlabs(const BoxSweep<Real, Dim>& sweep) : begin_(sweep.begin) {
     for (std::size_t axis = 0; axis < V::size(); ++axis) {
       const Real way = sweep.way[axis];
       is_still_[axis] = way == Real(0);

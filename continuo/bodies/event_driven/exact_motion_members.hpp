@@ -47,6 +47,14 @@ Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (options_.contact_time && !(*options_.contact_time >= Real(0)))
     return invalid_input("contact_time must be 0 or more");
   if (Status fault = check_bodies(*world_); !fault) return fault;
+  if (world_->has_solids() || world_->joint_count() > 0)
+    return invalid_input("the exact motion moves balls without joints: use FastMotion for other shapes and for joints");
+  for (std::size_t i = 0; world_->has_traits() && i < world_->size(); ++i) {
+    BodyTraits<Real> traits = world_->traits(i);
+    traits.user_data = 0;
+    if (traits != BodyTraits<Real>{})
+      return invalid_input("the exact motion knows no traits of bodies but user_data: use FastMotion");
+  }
   if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
   return engine_->advance_to(t);

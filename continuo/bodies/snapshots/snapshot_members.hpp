@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <continuo/bodies/snapshot.hpp>
+#include <continuo/bodies/snapshots/shape_members.hpp>
 
 namespace continuo {
 
@@ -94,6 +95,46 @@ void transfer_list(Archive& archive, std::vector<T>& values) {
 
 /// The private parts of a world.
 struct SnapshotAccess {
+  /// The shapes of bodies that are not balls, and joints.
+  template <class Archive, class Real, int Dim>
+  static void transfer_solids(Archive& archive, World<Real, Dim>& world) {
+    auto solids = static_cast<std::uint64_t>(world.solids_.size());
+    archive(solids);
+    if constexpr (Archive::reads) {
+      archive.expect(solids == 0 || solids == world.position.size(), "shapes of other bodies");
+      if (!archive.ok()) return;
+      world.solids_.assign(static_cast<std::size_t>(solids), nullptr);
+      world.solid_count_ = 0;
+    }
+    for (auto& of_body : world.solids_) {
+      Shape<Real, Dim> shape = of_body ? of_body->shape : Shape<Real, Dim>{};
+      detail::snapshots::transfer_one_of(archive, shape);
+      if constexpr (Archive::reads) {
+        if (!archive.ok()) return;
+        if (std::holds_alternative<Sphere<Real>>(shape)) continue;
+        auto made = world.solid_of(shape);
+        if (!made) return archive.fail(made.status().message);
+        of_body = *made;
+        ++world.solid_count_;
+      }
+    }
+    detail::snapshots::transfer_list(archive, world.traits_);
+    if constexpr (Archive::reads)
+      archive.expect(world.traits_.empty() || world.traits_.size() == world.position.size(), "traits of other bodies");
+    auto joints = static_cast<std::uint64_t>(world.joints_.size());
+    archive(joints);
+    if constexpr (Archive::reads) {
+      if (joints > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      world.joints_.assign(static_cast<std::size_t>(joints), {});
+      world.joint_count_ = 0;
+    }
+    for (auto& slot : world.joints_) {
+      archive(slot.generation), archive(slot.is_used);
+      detail::snapshots::transfer(archive, slot.joint);
+      if constexpr (Archive::reads) world.joint_count_ += slot.is_used ? 1 : 0;
+    }
+  }
+
   template <class Archive, class Real, int Dim>
   static void transfer_world(Archive& archive, World<Real, Dim>& world) {
     archive(world.time), archive(world.gravity);
@@ -125,6 +166,7 @@ struct SnapshotAccess {
     }
     for (auto& slot : world.slots_) archive(slot.index), archive(slot.generation);
     archive(world.ignored_);
+    transfer_solids(archive, world);
     if constexpr (Archive::reads) check(archive, world);
   }
 
