@@ -91,7 +91,8 @@ class FastMotion {
 
  private:
   class Stepper;
-  std::unique_ptr<Stepper> stepper_;
+  struct Steppers;
+  std::unique_ptr<Steppers> steppers_;
 };
 
 extern template class FastMotion<float, 2>;

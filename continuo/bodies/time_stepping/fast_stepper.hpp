@@ -12,6 +12,7 @@
 #include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/time_stepping/body_transfer.hpp>
 #include <continuo/bodies/time_stepping/contact_passes.hpp>
+#include <continuo/bodies/time_stepping/fast_options_check.hpp>
 #include <continuo/bodies/time_stepping/force_integration.hpp>
 #include <continuo/bodies/time_stepping/impacts.hpp>
 #include <continuo/bodies/time_stepping/sleep.hpp>
@@ -33,7 +34,7 @@ class FastMotion<Real, Dim>::Stepper {
   /// Where the bodies make no sense, the next step says so.
   void renew() {
     is_stale_ = true;
-    if (!check_options()) return;
+    if (!check(options_, world_)) return;
     team_.run([&] { refresh(); });
   }
   void refresh() {
@@ -123,7 +124,7 @@ class FastMotion<Real, Dim>::Stepper {
  private:
   /// The stages of a step.
   [[nodiscard]] Status step() {
-    if (Status status = check_options(); !status) return status;
+    if (Status status = check(options_, world_); !status) return status;
     wake_changed();
     if (!is_other_at_rest_ && sleep_.is_all_asleep()) return rest();
     load();
@@ -149,20 +150,6 @@ class FastMotion<Real, Dim>::Stepper {
     const Real steps = round(world_.time / options_.step), distance = world_.time - steps * options_.step;
     const bool is_multiple = abs(distance) <= 4 * std::numeric_limits<Real>::epsilon() * abs(world_.time);
     return is_multiple ? (steps + 1) * options_.step : world_.time + options_.step;
-  }
-
-  [[nodiscard]] Status check_options() const {
-    if (!(options_.step > Real(0)) || !(options_.step < std::numeric_limits<Real>::infinity()))
-      return invalid_input("the step must be greater than 0, and finite");
-    if (options_.substeps < 1) return invalid_input("a step has at least one substep");
-    if (!(options_.hertz > Real(0)) || !(options_.hertz < std::numeric_limits<Real>::infinity()))
-      return invalid_input("hertz must be greater than 0, and finite");
-    if (!(options_.damping >= Real(0)) || !(options_.fastest_push >= Real(0)))
-      return invalid_input("damping and fastest_push must be 0 or more");
-    if (!(options_.sleep_after >= Real(0)) || !(options_.sleep_speed >= Real(0)))
-      return invalid_input("sleep_after and sleep_speed must be 0 or more");
-    if (options_.threads < 1) return invalid_input("there is at least one thread");
-    return check_bodies(world_);
   }
 
   /// Bodies that the caller has changed wake.

@@ -1,0 +1,102 @@
+// Solves the rows of one island in a substep: together, where its graph is thin (direct_solver.hpp), and by sweeps of
+// soft contacts elsewhere (constraint_rows.hpp), whose cost grows with the number of rows only.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/rigid_stepping/direct_solver.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_islands.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class IslandSolver {
+ public:
+  using Bodies = std::span<RigidBody<Real, Dim>>;
+
+  /// Takes an island at the beginning of a step.
+  void begin(const RigidIslands& islands, std::size_t island, const Constraints<Real, Dim>& all,
+             std::span<const RigidBody<Real, Dim>> bodies) {
+    members_ = islands.bodies(island), blocks_ = islands.blocks(island);
+    pairs_.clear();
+    has_joints_ = false;
+    std::size_t rows = 0;
+    for (const std::uint32_t k : blocks_) {
+      const RowBlock& block = all.blocks[k];
+      const auto place = [&](std::uint32_t body) {
+        return bodies[body].is_fixed() ? DirectSolver<Dim>::fixed : islands.place(body);
+      };
+      pairs_.push_back({place(block.a), place(block.b)});
+      has_joints_ |= block.points == 0;
+      rows += block.rows;
+    }
+    // A product of blocks costs as much as some ten rows of a sweep, of which a step has two for each substep.
+    const std::size_t most_updates = rows / 2 + 100;
+    is_direct_ = direct_.analyse(members_.size(), pairs_, most_updates);
+    is_loaded_ = false;
+  }
+  [[nodiscard]] bool is_direct() const { return is_direct_; }
+
+  /// Removes what the rows forbid from the velocities after the forces of a substep have acted.
+  void push(Constraints<Real, Dim>& all, Bodies bodies) {
+    if (is_direct_) {
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::push);
+      if (has_joints_ || !is_loaded_) {
+        direct_.template load_rows<Real>(blocks_, all, bodies);
+      } else {
+        direct_.template load_biases<Real>(blocks_, all);
+      }
+      is_loaded_ = true;
+      return solve_directly(RowPass::push, all, bodies);
+    }
+    for (const std::uint32_t k : blocks_)
+      for (const auto& row : all.of(all.blocks[k]))
+        if (row.impulse != Real(0)) row.apply(row.impulse, bodies[all.blocks[k].a], bodies[all.blocks[k].b]);
+    sweep_all(RowPass::push, all, bodies);
+  }
+  /// Removes the velocity that correcting positions gave.
+  void relax(Constraints<Real, Dim>& all, Bodies bodies) {
+    if (!is_direct_) return sweep_all(RowPass::relax, all, bodies);
+    if (has_joints_) {
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
+      direct_.template load_rows<Real>(blocks_, all, bodies);
+      direct_.remove_impulses();
+    } else {
+      direct_.template load_biases<Real>(blocks_, all);
+    }
+    solve_directly(RowPass::relax, all, bodies);
+  }
+  /// Adds what impacts give: the rows begin without impulses.
+  void rebound(Constraints<Real, Dim>& all, Bodies bodies) {
+    if (is_direct_) {
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
+      direct_.template load_rows<Real>(blocks_, all, bodies);
+      return solve_directly(RowPass::relax, all, bodies);
+    }
+    constexpr int sweeps = 8;
+    for (int k = 0; k < sweeps; ++k) sweep_all(RowPass::relax, all, bodies);
+  }
+
+ private:
+  void solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
+    direct_.solve(pass);
+    direct_.template store_bodies<Real>(members_, bodies);
+    direct_.template store_impulses<Real>(blocks_, all);
+  }
+  void sweep_all(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
+    for (const std::uint32_t k : blocks_) {
+      const RowBlock& block = all.blocks[k];
+      sweep<Real, Dim>(all.of(block), block, pass, bodies[block.a], bodies[block.b]);
+    }
+  }
+
+  DirectSolver<Dim> direct_;
+  std::span<const std::uint32_t> members_, blocks_;
+  std::vector<typename DirectSolver<Dim>::Pair> pairs_;
+  bool is_direct_ = false, has_joints_ = false, is_loaded_ = false;
+};
+
+}  // namespace continuo

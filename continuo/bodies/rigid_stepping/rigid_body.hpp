@@ -1,0 +1,84 @@
+// A rigid body as the solver of contacts and joints sees it.
+#pragma once
+#include <cmath>
+#include <cstddef>
+
+#include <continuo/shapes/convex.hpp>
+#include <continuo/shapes/matrix.hpp>
+
+namespace continuo {
+
+template <class Real>
+[[nodiscard]] Matrix<Real, 1> turned_inertia(const Matrix<Real, 2>&, const Matrix<Real, 1>& inertia) {
+  return inertia;
+}
+template <class Real>
+[[nodiscard]] Matrix<Real, 3> turned_inertia(const Matrix<Real, 3>& axes, const Matrix<Real, 3>& inertia) {
+  return axes * inertia * transposed(axes);
+}
+
+template <class Real, int Dim>
+struct RigidBody {
+  Vector<Real, Dim> x{}, v{};                                        // of the centre of mass
+  Spin<Real, Dim> spin{};                                            // the angular velocity
+  Orientation<Real, Dim> orientation = upright<Real, Dim>();         // of the frame of the shape
+  Matrix<Real, Dim> axes = identity_matrix<Real, Dim>();             // the same, as a rotation
+  Vector<Real, Dim> moved{};                                         // of the centre since the step began
+  Vector<Real, Dim> x_before{};                                      // when the step began
+  Orientation<Real, Dim> orientation_before = upright<Real, Dim>();  // then
+  Spin<Real, Dim> lag{};                            // of the spin that turns the body behind `spin`, see turn_freely
+  Real inverse_mass{};                              // 0: never moves
+  bool is_ball = false;                             // the same moment of inertia about all axes
+  bool was_moved = false;                           // by the caller, since the last step
+  Inertia<Real, Dim> inertia{}, inverse_inertia{};  // in the frame of the shape
+  Inertia<Real, Dim> inverse_inertia_now{};         // in the world
+
+  Inertia<Real, Dim> stiffening{};  // by forces of joints, see add_stiffening
+
+  [[nodiscard]] bool is_fixed() const { return inverse_mass == Real(0); }
+  [[nodiscard]] Pose<Real, Dim> pose() const { return {x, axes}; }
+  [[nodiscard]] Vector<Real, Dim> velocity_at(const Vector<Real, Dim>& arm) const { return v + turning(spin, arm); }
+
+  /// After the orientation has changed.
+  void update_axes() {
+    axes = rotation(orientation);
+    inverse_inertia_now = turned_inertia(axes, inverse_inertia);
+  }
+  void move(const Real& h) {
+    x += v * h;
+    moved += v * h;
+    orientation = turned(orientation, Spin<Real, Dim>(spin + lag), h);
+  }
+};
+
+/// The inverse of a moment of inertia, which is symmetric and positive definite.
+template <class Real>
+[[nodiscard]] Matrix<Real, 1> inverse(const Matrix<Real, 1>& a) {
+  return {{{{{1 / a[0][0]}}}}};
+}
+template <class Real>
+[[nodiscard]] Matrix<Real, 3> inverse(const Matrix<Real, 3>& a) {
+  const Vector<Real, 3> x = moment(a[1], a[2]), y = moment(a[2], a[0]), z = moment(a[0], a[1]);
+  return transposed(Matrix<Real, 3>{{{x, y, z}}}) * (1 / dot(a[0], x));
+}
+
+/// The spin of a body of space after h without torques, by the midpoint rule: its angular momentum L stays the same to
+/// rounding, so that w = I^-1 L remains bounded whatever h. The body is to be turned with the spin in the middle of h,
+/// which is behind that at the end by `lag`.
+template <class Real>
+void turn_freely(RigidBody<Real, 3>& body, const Real& h) {
+  if (body.is_ball) return;
+  const Vector<Real, 3> momentum = body.axes * (body.inertia * transposed_times(body.axes, body.spin));
+  const auto spin_at = [&](const Vector<Real, 3>& spin, const Real& duration) {
+    const Matrix<Real, 3> axes = rotation(turned(body.orientation, spin, duration));
+    return axes * (body.inverse_inertia * transposed_times(axes, momentum));
+  };
+  Vector<Real, 3> middle = spin_at(body.spin, h / 2);
+  middle = spin_at(middle, h / 2);
+  body.spin = spin_at(middle, h);
+  body.lag = middle - body.spin;
+}
+template <class Real>
+void turn_freely(RigidBody<Real, 2>&, const Real&) {}
+
+}  // namespace continuo

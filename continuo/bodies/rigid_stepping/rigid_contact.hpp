@@ -1,0 +1,150 @@
+// A contact of two rigid bodies from step to step: the points of its manifold with their impulses, and the rows that
+// hold them apart.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <continuo/bodies/contact_solver/contact_step.hpp>
+#include <continuo/bodies/rigid_stepping/constraint_rows.hpp>
+#include <continuo/shapes/manifold.hpp>
+
+namespace continuo {
+
+/// Unit vectors across a normal.
+template <class Real>
+[[nodiscard]] std::array<Vector<Real, 2>, 1> directions_across(const Vector<Real, 2>& normal) {
+  return {perpendicular(normal)};
+}
+template <class Real>
+[[nodiscard]] std::array<Vector<Real, 3>, 2> directions_across(const Vector<Real, 3>& normal) {
+  const Vector<Real, 3> across = perpendicular(normal);
+  return {across, moment(normal, across)};
+}
+
+template <class Real, int Dim>
+struct RigidContactPoint {
+  Vector<Real, Dim> arm_a{}, arm_b{};      // from the centres, in the world, when the step began
+  Vector<Real, Dim> local_a{}, local_b{};  // the same, in the frames of the bodies
+  Real separation{};                       // when the step began
+  Real approach{};                         // normal velocity then
+  Real impulse{};                          // along the normal, of the last substep
+  Vector<Real, Dim> friction{};            // impulse across it
+  Real greatest_impulse{};                 // along the normal, of the substeps of this step
+  std::uint32_t feature = 0;
+};
+
+template <class Real, int Dim>
+struct RigidContact {
+  static constexpr std::size_t most_points = Manifold<Real, Dim>::most_points;
+  Vector<Real, Dim> normal{};  // from a to b, in the world
+  std::array<RigidContactPoint<Real, Dim>, most_points> points{};
+  std::size_t size = 0;  // of the points
+  Real friction{}, restitution{};
+
+  [[nodiscard]] auto all() { return std::span(points).first(size); }
+  [[nodiscard]] auto all() const { return std::span(points).first(size); }
+};
+
+/// A contact of bodies a and b with a manifold whose points are in the frame `of_a`, and with the impulses of those
+/// points of the contact before, if there was one, that have the same features.
+template <class Real, int Dim>
+[[nodiscard]] RigidContact<Real, Dim> contact_of(const Manifold<Real, Dim>& manifold, const Pose<Real, Dim>& of_a,
+                                                 const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b,
+                                                 const RigidContact<Real, Dim>* before) {
+  RigidContact<Real, Dim> contact;
+  contact.size = manifold.size;
+  contact.normal = of_a.axes * manifold.normal;
+  for (std::size_t i = 0; i < manifold.size; ++i) {
+    const ManifoldPoint<Real, Dim>& found = manifold.points[i];
+    RigidContactPoint<Real, Dim>& point = contact.points[i];
+    point.feature = found.feature;
+    if (before)
+      for (const auto& old : before->all())
+        if (old.feature == found.feature) point.impulse = old.impulse, point.friction = old.friction;
+    const Vector<Real, Dim> x = of_a.place(found.position);
+    point.arm_a = x - a.x, point.arm_b = x - b.x;
+    point.local_a = a.pose().local(x), point.local_b = b.pose().local(x);
+    point.separation = found.separation;
+    point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
+  }
+  return contact;
+}
+
+/// How far apart the surfaces are now at a point of a contact.
+template <class Real, int Dim>
+[[nodiscard]] Real separation(const RigidContact<Real, Dim>& contact, const RigidContactPoint<Real, Dim>& point,
+                              const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+  const Vector<Real, Dim> shifted =
+      (b.moved - a.moved) + (b.axes * point.local_b - point.arm_b) - (a.axes * point.local_a - point.arm_a);
+  return point.separation + dot(shifted, contact.normal);
+}
+
+/// How the contacts of a step are to be held apart.
+template <class Real>
+struct ContactHardness {
+  Real h{};             // of the substep
+  Real rate{};          // of undoing overlaps, per time
+  Real softness{};      // velocity per impulse, times the mass; 0 is rigid
+  Real fastest_push{};  // of undoing overlaps
+};
+
+/// Adds the rows of a contact of bodies a and b, in a block of their own.
+template <class Real, int Dim>
+void add_rows(const RigidContact<Real, Dim>& contact, std::uint32_t number_a, std::uint32_t number_b,
+              const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b, Constraints<Real, Dim>& all) {
+  RowBlock block{.a = number_a,
+                 .b = number_b,
+                 .first = static_cast<std::uint32_t>(all.rows.size()),
+                 .rows = static_cast<std::uint16_t>(contact.size * Dim),
+                 .points = static_cast<std::uint16_t>(contact.size),
+                 .friction = static_cast<float>(contact.friction)};
+  const auto add = [&](const Vector<Real, Dim>& direction, const RigidContactPoint<Real, Dim>& point) -> auto& {
+    ConstraintRow<Real, Dim>& row = all.rows.emplace_back();
+    row.direction = direction;
+    row.lever_a = moment(point.arm_a, direction), row.lever_b = moment(point.arm_b, direction);
+    set_mass(row, a, b);
+    return row;
+  };
+  for (const auto& point : contact.all()) {
+    ConstraintRow<Real, Dim>& row = add(contact.normal, point);
+    row.least = Real(0);
+    row.impulse = point.impulse;
+  }
+  const auto across = directions_across(contact.normal);
+  for (const auto& point : contact.all())
+    for (const Vector<Real, Dim>& direction : across) add(direction, point).impulse = dot(point.friction, direction);
+  all.blocks.push_back(block);
+}
+
+/// Sets the velocities that the rows of a contact ask for, from where the bodies are now.
+template <class Real, int Dim>
+void aim(const RigidContact<Real, Dim>& contact, std::span<ConstraintRow<Real, Dim>> rows,
+         const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b, const ContactHardness<Real>& hardness) {
+  for (std::size_t i = 0; i < contact.size; ++i) {
+    const Real apart = separation(contact, contact.points[i], a, b);
+    ConstraintRow<Real, Dim>& row = rows[i];
+    const bool is_apart = apart > Real(0);  // then it may close within the substep
+    row.bias = is_apart ? apart / hardness.h : std::max(hardness.rate * apart, -hardness.fastest_push);
+    row.bias_at_end = is_apart ? apart / hardness.h : Real(0);
+    row.softness = is_apart || row.mass == Real(0) ? Real(0) : hardness.softness / row.mass;
+  }
+}
+
+/// Keeps the impulses of a substep.
+template <class Real, int Dim>
+void keep_impulses(RigidContact<Real, Dim>& contact, std::span<const ConstraintRow<Real, Dim>> rows) {
+  for (std::size_t i = 0; i < contact.size; ++i) {
+    auto& point = contact.points[i];
+    point.impulse = rows[i].impulse;
+    point.friction = {};
+    for (std::size_t k = 0; k < Dim - 1; ++k) {
+      const auto& row = rows[contact.size + i * (Dim - 1) + k];
+      point.friction += row.direction * row.impulse;
+    }
+  }
+}
+
+}  // namespace continuo

@@ -1,0 +1,75 @@
+// Islands: bodies that contacts and joints connect, without the fixed ones. The motions of different islands do not
+// depend on each other within a step.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/rigid_stepping/constraint_rows.hpp>
+
+namespace continuo {
+
+class RigidIslands {
+ public:
+  /// Groups the blocks of rows, where `moves(body)` tells which bodies move.
+  template <class Moves>
+  void find(std::size_t bodies, std::span<const RowBlock> blocks, Moves&& moves) {
+    leader_.resize(bodies);
+    std::iota(leader_.begin(), leader_.end(), 0u);
+    for (const RowBlock& block : blocks)
+      if (moves(block.a) && moves(block.b)) join(block.a, block.b);
+    number(bodies, blocks, moves);
+  }
+  [[nodiscard]] std::size_t size() const { return first_body_.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> bodies(std::size_t island) const {
+    return std::span(bodies_).subspan(first_body_[island], first_body_[island + 1] - first_body_[island]);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> blocks(std::size_t island) const {
+    return std::span(blocks_).subspan(first_block_[island], first_block_[island + 1] - first_block_[island]);
+  }
+  /// The place of a body within its island.
+  [[nodiscard]] std::uint32_t place(std::size_t body) const { return place_[body]; }
+
+ private:
+  [[nodiscard]] std::uint32_t leader(std::uint32_t i) {
+    while (leader_[i] != i) i = leader_[i] = leader_[leader_[i]];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) {
+    i = leader(i), j = leader(j);
+    leader_[std::max(i, j)] = std::min(i, j);
+  }
+  /// Islands are numbered by the lowest numbers of their bodies; bodies without blocks have none.
+  template <class Moves>
+  void number(std::size_t bodies, std::span<const RowBlock> blocks, Moves&& moves) {
+    const auto mover = [&](const RowBlock& block) { return moves(block.a) ? block.a : block.b; };
+    island_.assign(bodies, none);
+    for (const RowBlock& block : blocks) island_[leader(mover(block))] = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t& island : island_)
+      if (island != none) island = count++;
+    first_body_.assign(count + 1, 0), first_block_.assign(count + 1, 0);
+    for (std::uint32_t i = 0; i < bodies; ++i)
+      if (island_[leader(i)] != none && moves(i)) ++first_body_[island_[leader(i)] + 1];
+    for (const RowBlock& block : blocks) ++first_block_[island_[leader(mover(block))] + 1];
+    std::partial_sum(first_body_.begin(), first_body_.end(), first_body_.begin());
+    std::partial_sum(first_block_.begin(), first_block_.end(), first_block_.begin());
+    std::vector<std::uint32_t> next_body(first_body_), next_block(first_block_);
+    bodies_.resize(first_body_.back()), blocks_.resize(first_block_.back()), place_.resize(bodies);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+      const std::uint32_t island = island_[leader(i)];
+      if (island == none || !moves(i)) continue;
+      place_[i] = next_body[island] - first_body_[island];
+      bodies_[next_body[island]++] = i;
+    }
+    for (std::uint32_t k = 0; k < blocks.size(); ++k) blocks_[next_block[island_[leader(mover(blocks[k]))]]++] = k;
+  }
+
+  static constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> leader_, island_, place_, bodies_, blocks_, first_body_{0}, first_block_{0};
+};
+
+}  // namespace continuo

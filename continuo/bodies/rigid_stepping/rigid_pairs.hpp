@@ -1,0 +1,164 @@
+// The pairs of convex parts of bodies that may touch within the next steps: those whose bounds, grown by some room,
+// overlap. Only parts that have left their room are looked up again.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/bounds/bounds_tree.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_body.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// A part of a body, and a part of another body or a wall, in this order.
+struct PartPair {
+  std::uint32_t a = 0, b = 0;  // parts, or b = number of parts + wall
+  friend auto operator<=>(const PartPair&, const PartPair&) = default;
+};
+
+/// A convex part of a body.
+template <class Real, int Dim>
+struct RigidPart {
+  std::uint32_t body = 0;
+  const Convex<Real, Dim>* convex = nullptr;
+  Pose<Real, Dim> in_body{};
+  Real inner_radius{};  // of a ball around the centre that is within the part
+
+  [[nodiscard]] Pose<Real, Dim> pose(const RigidBody<Real, Dim>& of) const {
+    return {of.x + of.axes * in_body.centre, of.axes * in_body.axes};
+  }
+};
+
+/// The bounds of a convex body in a pose.
+template <class Real, int Dim>
+[[nodiscard]] Bounds<Real, Dim> bounds_of(const Convex<Real, Dim>& convex, const Pose<Real, Dim>& pose) {
+  Bounds<Real, Dim> bounds;
+  for (const Vector<Real, Dim>& corner : convex.core.corners) {
+    const Vector<Real, Dim> x = pose.place(corner);
+    bounds = united(bounds, Bounds<Real, Dim>{x, x});
+  }
+  return grown(bounds, convex.rounding);
+}
+
+template <class Real, int Dim>
+class RigidPairs {
+ public:
+  using V = Vector<Real, Dim>;
+
+  /// Takes the parts of all bodies.
+  void begin(const World<Real, Dim>& world) {
+    parts_.clear(), balls_.clear(), rooms_.clear(), pairs_.clear();
+    balls_.reserve(world.size());
+    for (std::uint32_t i = 0; i < world.size(); ++i) {
+      if (const Solid<Real, Dim>* const solid = world.solid(i)) {
+        for (const SolidPart<Real, Dim>& part : solid->parts)
+          parts_.push_back({i, &part.convex, part.in_solid, inner_radius(part.convex)});
+        continue;
+      }
+      Convex<Real, Dim>& ball = balls_.emplace_back();
+      ball.core.corners = {V{}};
+      ball.rounding = ball.reach = world.radius[i];
+      parts_.push_back({i, &ball, {}, ball.rounding});
+    }
+    is_new_ = true;
+  }
+  /// All parts, by the numbers of their bodies.
+  [[nodiscard]] std::span<const RigidPart<Real, Dim>> parts() const { return parts_; }
+  /// In increasing order.
+  [[nodiscard]] std::span<const PartPair> pairs() const { return pairs_; }
+  [[nodiscard]] const BoundsTree<Real, Dim>& tree() const { return tree_; }
+  [[nodiscard]] std::size_t memory() const {
+    return parts_.capacity() * sizeof(parts_[0]) + pairs_.capacity() * sizeof(PartPair) + tree_.memory() +
+           rooms_.capacity() * sizeof(rooms_[0]) + balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
+  }
+
+  /// Brings the pairs up to date, where `collide(i, j)` tells whether bodies i and j may. Returns whether parts had
+  /// left their rooms.
+  template <class Collide>
+  bool update(const World<Real, Dim>& world, std::span<const RigidBody<Real, Dim>> bodies, const Real& step,
+              Collide&& collide) {
+    find_movers(bodies, step);
+    if (moved_.empty()) return false;
+    tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
+    is_new_ = false;
+    const auto may_touch = [&](std::uint32_t i, std::uint32_t j) {
+      return parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
+    };
+    if (moved_.size() * 4 > parts_.size()) {
+      pairs_.clear();
+      tree_.for_each_pair([&](std::uint32_t i, std::uint32_t j) {
+        if (may_touch(i, j)) pairs_.push_back({i, j});
+      });
+      for (std::uint32_t i = 0; i < parts_.size(); ++i) add_walls(world, i);
+    } else {
+      std::vector<bool> has_moved(parts_.size());
+      for (const std::uint32_t i : moved_) has_moved[i] = true;
+      std::erase_if(pairs_, [&](const PartPair& pair) {
+        return has_moved[pair.a] || (pair.b < parts_.size() && has_moved[pair.b]);
+      });
+      for (const std::uint32_t i : moved_) {
+        tree_.for_each_overlap(rooms_[i], [&](std::uint32_t j) {
+          if (may_touch(i, j) && (!has_moved[j] || i < j)) pairs_.push_back({std::min(i, j), std::max(i, j)});
+        });
+        add_walls(world, i);
+      }
+    }
+    std::ranges::sort(pairs_);
+    return true;
+  }
+
+ private:
+  [[nodiscard]] static Real inner_radius(const Convex<Real, Dim>& convex) {
+    Real least = convex.core.faces.empty() ? Real(0) : convex.core.faces.front().offset;
+    for (const Face<Real, Dim>& face : convex.core.faces) least = std::min(least, face.offset);
+    return least + convex.rounding;
+  }
+  void find_movers(std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
+    moved_.clear();
+    rooms_.resize(parts_.size());
+    for (std::uint32_t i = 0; i < parts_.size(); ++i) {
+      const RigidPart<Real, Dim>& part = parts_[i];
+      const RigidBody<Real, Dim>& body = bodies[part.body];
+      if (body.is_fixed() && !is_new_ && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved) continue;
+      const Real margin = contact_margin(part, body, step);
+      const Bounds<Real, Dim> bounds = grown(bounds_of(*part.convex, part.pose(body)), margin);
+      if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) continue;
+      rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * margin);
+      moved_.push_back(i);
+    }
+  }
+  void add_walls(const World<Real, Dim>& world, std::uint32_t i) {
+    const auto walls = world.walls();
+    if (world.is_fixed(parts_[i].body)) return;
+    const V centre = (rooms_[i].lower + rooms_[i].upper) * Real(0.5), half = rooms_[i].upper - centre;
+    for (std::uint32_t k = 0; k < walls.size(); ++k) {
+      Real reach(0), side = dot(walls[k].normal, centre) - walls[k].offset;
+      for (std::size_t axis = 0; axis < Dim; ++axis) reach += std::abs(walls[k].normal[axis]) * half[axis];
+      if (walls[k].thin) side = std::abs(side);
+      if (side <= reach) pairs_.push_back({i, static_cast<std::uint32_t>(parts_.size()) + k});
+    }
+  }
+
+ public:
+  /// Surfaces that are nearer than the sum of these of both parts have a contact.
+  [[nodiscard]] static Real contact_margin(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
+                                           const Real& step) {
+    const Real way = (length(body.v) + length(body.spin) * part.convex->reach) * step;
+    return std::min(way, part.convex->reach / 2) + part.convex->reach / 100;
+  }
+
+ private:
+  std::vector<RigidPart<Real, Dim>> parts_;
+  std::vector<Convex<Real, Dim>> balls_;
+  std::vector<Bounds<Real, Dim>> rooms_;
+  std::vector<std::uint32_t> moved_;
+  std::vector<PartPair> pairs_;
+  BoundsTree<Real, Dim> tree_;
+  bool is_new_ = true;
+};
+
+}  // namespace continuo

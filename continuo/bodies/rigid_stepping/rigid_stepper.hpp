@@ -1,0 +1,524 @@
+// A step of the fast motion in worlds with bodies of any shape, or with joints: the substeps of "temporal Gauss-Seidel"
+// (M. Macklin et al., "Small steps in physics simulation", SCA 2019; E. Catto, "Solver2D", 2024), where thin islands
+// are solved directly.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/rigid_stepping/continuous_collision.hpp>
+#include <continuo/bodies/rigid_stepping/island_solver.hpp>
+#include <continuo/bodies/rigid_stepping/joint_rows.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_sleep.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
+#include <continuo/bodies/time_stepping/fast_options_check.hpp>
+#include <continuo/bodies/time_stepping/touch_log.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class RigidStepper {
+ public:
+  using V = Vector<Real, Dim>;
+  using S = Spin<Real, Dim>;
+
+  RigidStepper(World<Real, Dim>& world, const FastOptions<Real>& options)
+      : log(options.contact_events), world_(world), options_(options), team_(options.threads) {}
+
+  void renew() {
+    is_stale_ = true;
+    contacts_.clear();
+    sleep_ = {};
+  }
+  [[nodiscard]] Status advance() {
+    Status status;
+    team_.run([&] { status = step(); });
+    return status;
+  }
+  [[nodiscard]] Real deepest_overlap() const {
+    Real deepest(0);
+    for (const auto& found : contacts_.all())
+      for (const auto& point : found.contact.all())
+        deepest = std::max(deepest, -separation(found.contact, point, bodies_[found.a], bodies_[found.b]));
+    return deepest;
+  }
+  [[nodiscard]] std::size_t memory() const {
+    return bodies_.capacity() * sizeof(bodies_[0]) + pairs_.memory() + contacts_.memory() +
+           rows_.rows.capacity() * sizeof(rows_.rows[0]) + rows_.blocks.capacity() * sizeof(RowBlock);
+  }
+
+  /// The impulses of contacts and joints, and what sleeps.
+  /// @{
+  void save(ByteWriter& writer) const { const_cast<RigidStepper*>(this)->transfer(writer); }
+  void load(ByteReader& reader) {
+    is_stale_ = true;
+    transfer(reader);
+    reader.expect(sleep_.fits(world_.size()), "the sleep of other bodies");
+    reader.expect_end();
+  }
+  /// @}
+
+  FastStatistics statistics{};
+  ContactLog<Real, Dim> log;
+
+ private:
+  /// The stages of a step.
+  [[nodiscard]] Status step() {
+    if (Status fault = check_world(); !fault) return fault;
+    load();
+    find_contacts();
+    gather_rows();
+    islands_.find(bodies_.size(), rows_.blocks, [this](std::uint32_t i) { return moves(i); });
+    begin_islands();
+    const Real h = substep();
+    for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
+    rebound();
+    if (!all_finite()) {
+      is_stale_ = true;
+      return {.ending = Ending::not_finite,
+              .message = "a body's motion is no longer finite: a force or a mass is too large for the step"};
+    }
+    stop_fast_bodies();
+    store();
+    return {};
+  }
+
+  [[nodiscard]] Status check_world() const {
+    if (Status fault = check(options_, world_); !fault) return fault;
+    if (options_.integrator != ForceIntegrator::semi_implicit_euler)
+      return invalid_input("bodies other than balls, and joints, are moved by semi-implicit Euler only");
+    for (const Material<Real>& material : world_.material)
+      if (material.rolling_resistance > Real(0))
+        return invalid_input("rolling resistance exists only in worlds of balls without joints");
+    for (const JointHandle handle : world_.joints()) {
+      const Joint<Real, Dim>& joint = *world_.find(handle);
+      if (!world_.contains(joint.b) || (joint.a != BodyHandle{} && !world_.contains(joint.a)))
+        return invalid_input("a joint connects a body that the world does not contain");
+    }
+    return {};
+  }
+
+  [[nodiscard]] Real substep() const { return options_.step / static_cast<Real>(options_.substeps); }
+  [[nodiscard]] bool moves(std::size_t body) const { return !bodies_[body].is_fixed(); }
+  [[nodiscard]] std::uint32_t number_of(BodyHandle handle) const {
+    return handle == BodyHandle{} ? static_cast<std::uint32_t>(bodies_.size() - 1)
+                                  : static_cast<std::uint32_t>(world_.index(handle));
+  }
+
+  /// Takes the bodies of the world; after them, one that never moves for each wall, and one for the world itself. What
+  /// sleeps is fixed for this step.
+  void load() {
+    const std::size_t n = world_.size(), walls = world_.walls().size();
+    if (is_stale_ || bodies_.size() != n + walls + 1) {
+      bodies_.assign(n + walls + 1, {});
+      pairs_.begin(world_);
+      is_stale_ = false;
+    }
+    sleep_.wake_changed(world_, bodies_);
+    for (std::size_t i = 0; i < n; ++i) load(i);
+    joint_handles_ = world_.joints();
+    joints_.resize(joint_handles_.size());
+    for (std::size_t k = 0; k < joint_handles_.size(); ++k)
+      if (joints_[k].handle != joint_handles_[k]) joints_[k] = {.handle = joint_handles_[k]};
+    apart_.clear();
+    for (const JointHandle handle : joint_handles_) {
+      const Joint<Real, Dim>& joint = *world_.find(handle);
+      if (joint.collide || joint.is_broken || joint.a == BodyHandle{}) continue;
+      const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
+      apart_.emplace_back(std::min(a, b), std::max(a, b));
+    }
+    std::ranges::sort(apart_);
+  }
+  void load(std::size_t i) {
+    RigidBody<Real, Dim>& body = bodies_[i];
+    body.was_moved = body.x != world_.position[i] || body.orientation != world_.orientation[i];
+    body.x = body.x_before = world_.position[i], body.v = world_.velocity[i];
+    body.orientation = body.orientation_before = world_.orientation[i], body.spin = world_.spin[i];
+    body.moved = {};
+    const bool is_still = world_.is_fixed(i) || sleep_.is_asleep(i);
+    if (world_.is_fixed(i) && !world_.traits(i).is_driven) body.v = {}, body.spin = {};
+    body.inverse_mass = is_still ? Real(0) : world_.inverse_mass[i];
+    body.is_ball = world_.solid(i) == nullptr;
+    body.inertia = world_.inertia(i);
+    body.inverse_inertia = is_still ? Inertia<Real, Dim>{} : inverse(body.inertia);
+    body.update_axes();
+  }
+
+  void find_contacts() {
+    const auto collide = [this](std::uint32_t i, std::uint32_t j) {
+      return world_.collide(i, j) && (!world_.may_collide || world_.may_collide(world_, i, j)) &&
+             (apart_.empty() || !std::ranges::binary_search(apart_, std::pair(std::min(i, j), std::max(i, j))));
+    };
+    for (;;) {
+      statistics.lists += pairs_.update(world_, bodies_, options_.step, collide) ? 1 : 0;
+      const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
+      contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active);
+      if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return;
+      for (std::size_t i = 0; i < world_.size(); ++i) load(i);
+    }
+  }
+  /// Rows of contacts first: they stay the same during a step, those of joints follow the bodies.
+  void gather_rows() {
+    rows_.clear();
+    active_.clear();
+    const auto all = contacts_.all();
+    for (std::uint32_t k = 0; k < all.size(); ++k) {
+      const auto& found = all[k];
+      if ((!moves(found.a) && !moves(found.b)) || !pushes(found)) continue;
+      add_rows(found.contact, found.a, found.b, bodies_[found.a], bodies_[found.b], rows_);
+      active_.push_back(k);
+    }
+    contact_rows_ = rows_.rows.size();
+    gather_joints();
+  }
+  [[nodiscard]] bool pushes(const PartContact<Real, Dim>& found) const {
+    if (found.b >= world_.size()) return !world_.traits(found.a).is_sensor;
+    if (world_.has_traits() && (world_.traits(found.a).is_sensor || world_.traits(found.b).is_sensor)) return false;
+    return !world_.may_push || world_.may_push(world_, found.a, found.b, found.contact.normal);
+  }
+  void gather_joints() {
+    rows_.rows.resize(contact_rows_), rows_.blocks.resize(active_.size());
+    joint_rows_.clear(), acting_joints_.clear();
+    for (RigidBody<Real, Dim>& body : bodies_) body.stiffening = {};
+    const Real h = substep();
+    const Softness<Real> soft = softness(1 / (4 * h), Real(2), h);
+    const JointHardness<Real> direct{.h = h, .rate = 1 / h, .softness = Real(0)};
+    const JointHardness<Real> swept{.h = h, .rate = soft.rate, .softness = soft.of_impulse / soft.of_mass};
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      const Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
+      const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
+      if (joint.is_broken || (!moves(a) && !moves(b))) continue;
+      acting_joints_.push_back(static_cast<std::uint32_t>(k));
+      add_rows(joint, joints_[k].impulses, a, b, bodies_[a], bodies_[b], joints_[k].is_swept ? swept : direct, rows_,
+               joint_rows_);
+      // Impulses are forces times h.
+      const V force = joints_[k].linear;
+      add_stiffening(V(bodies_[a].axes * joint.anchor_a), V(-force), h, bodies_[a].stiffening);
+      add_stiffening(V(bodies_[b].axes * joint.anchor_b), force, h, bodies_[b].stiffening);
+    }
+    for (std::uint32_t i = 0; world_.has_traits() && i < world_.size(); ++i)
+      if (const Locked locked = world_.traits(i).locked; locked != Locked::none && moves(i)) add_locks(i, locked);
+  }
+  /// A row to the world for each direction in which a body is held.
+  void add_locks(std::uint32_t i, Locked locked) {
+    const auto world_body = static_cast<std::uint32_t>(bodies_.size() - 1);
+    RowBlock block{.a = world_body, .b = i, .first = static_cast<std::uint32_t>(rows_.rows.size())};
+    const auto add = [&](Locked bit, auto member, std::size_t axis) {
+      if (!has(locked, bit)) return;
+      ConstraintRow<Real, Dim>& row = rows_.rows.emplace_back();
+      (row.*member)[axis] = Real(1);
+      set_mass(row, bodies_[world_body], bodies_[i]);
+    };
+    using Row = ConstraintRow<Real, Dim>;
+    add(Locked::x, &Row::direction, 0), add(Locked::y, &Row::direction, 1);
+    if constexpr (Dim == 3) {
+      add(Locked::z, &Row::direction, 2);
+      add(Locked::turn_x, &Row::lever_b, 0), add(Locked::turn_y, &Row::lever_b, 1),
+          add(Locked::turn_z, &Row::lever_b, 2);
+    } else {
+      add(Locked::turn_z, &Row::lever_b, 0);
+    }
+    block.rows = static_cast<std::uint16_t>(rows_.rows.size() - block.first);
+    if (block.rows > 0) rows_.blocks.push_back(block);
+  }
+  void begin_islands() {
+    solvers_.resize(islands_.size());
+    is_alone_.assign(world_.size(), true);
+    for (std::size_t k = 0; k < islands_.size(); ++k)
+      for (const std::uint32_t i : islands_.bodies(k)) is_alone_[i] = false;
+    for_each_island([this](std::size_t k) { solvers_[k].begin(islands_, k, rows_, bodies_); });
+    hardness_.clear();
+    const Real h = substep(), hertz = std::min(options_.hertz, 1 / (8 * h));
+    const Softness<Real> soft = softness(hertz, options_.damping, h);
+    statistics.hertz = static_cast<double>(hertz);
+    hardness_.assign(rows_.blocks.size(), {h, soft.rate, soft.of_impulse / soft.of_mass, options_.fastest_push});
+    for (std::size_t k = 0; k < islands_.size(); ++k)
+      for (const std::uint32_t block : islands_.blocks(k))
+        if (block >= active_.size() + acting_joints_.size()) {
+          continue;
+        } else if (block >= active_.size()) {
+          joints_[acting_joints_[block - active_.size()]].is_swept = !solvers_[k].is_direct();
+        } else if (solvers_[k].is_direct())
+          hardness_[block] = {h, Real(0.2) / h, Real(0), options_.fastest_push};
+  }
+  template <class Act>
+  void for_each_island(Act&& act) {
+    team_.for_each(0, islands_.size(), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) act(k);
+    });
+  }
+
+  void move_substep(const Real& now, const Real& h) {
+    accelerate(now, h);
+    if (has_joint_rows()) gather_joints();
+    aim_contacts();
+    for_each_island([this](std::size_t k) { solvers_[k].push(rows_, bodies_); });
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      RigidBody<Real, Dim>& body = bodies_[i];
+      if (body.is_fixed()) {
+        body.move(h);
+        if (body.v != V{} || body.spin != S{}) body.update_axes();
+        continue;
+      }
+      body.move(h);
+      if (is_alone_[i]) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
+      body.axes = rotation(body.orientation);
+    }
+    keep();
+    if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
+    aim_contacts();
+    for_each_island([this](std::size_t k) { solvers_[k].relax(rows_, bodies_); });
+    note_greatest_impulses();
+  }
+  [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size(); }
+  void accelerate(const Real& now, const Real& h) {
+    const std::size_t n = world_.size();
+    acceleration_.resize(n);
+    if (only_gravity(world_)) {
+      for (std::size_t i = 0; i < n; ++i) acceleration_[i] = world_.gravity;
+    } else {
+      std::vector<V> x(n), v(n);
+      for (std::size_t i = 0; i < n; ++i) x[i] = bodies_[i].x, v[i] = bodies_[i].v;
+      forces<Real, Dim>(world_, now, x, v, acceleration_);
+      for (std::size_t i = 0; i < n; ++i) acceleration_[i] *= world_.inverse_mass[i];
+    }
+    for (std::size_t i = 0; world_.has_traits() && i < n; ++i)
+      acceleration_[i] += world_.gravity * (world_.traits(i).gravity_scale - 1);
+    std::vector<S> torque;
+    if (!world_.torque_laws.empty()) torque = torques_now(now);
+    for (std::size_t i = 0; i < n; ++i) {
+      RigidBody<Real, Dim>& body = bodies_[i];
+      if (body.is_fixed()) continue;
+      body.v += acceleration_[i] * h;
+      turn_freely(body, h);
+      if (!torque.empty()) body.spin += body.inverse_inertia_now * torque[i] * h;
+      if (!world_.has_traits()) continue;
+      const BodyTraits<Real> traits = world_.traits(i);
+      body.v *= 1 / (1 + h * traits.damping);
+      body.spin *= 1 / (1 + h * traits.spin_damping);
+      is_alone_[i] = is_alone_[i] && traits.damping == Real(0);
+    }
+  }
+  [[nodiscard]] std::vector<S> torques_now(const Real& now) const {
+    const std::size_t n = world_.size();
+    std::vector<V> x(n), v(n);
+    std::vector<Orientation<Real, Dim>> orientation(n);
+    std::vector<S> spin(n), torque(n);
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = bodies_[i].x, v[i] = bodies_[i].v, orientation[i] = bodies_[i].orientation, spin[i] = bodies_[i].spin;
+    torques<Real, Dim>(world_, now, {x, v, orientation, spin}, torque);
+    return torque;
+  }
+  void aim_contacts() {
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      const auto& found = contacts_.all()[active_[k]];
+      aim(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b], hardness_[k]);
+    }
+  }
+  /// Keeps the impulses of a substep.
+  void keep() {
+    for (std::size_t k = 0; k < active_.size(); ++k)
+      keep_impulses<Real, Dim>(contacts_.all()[active_[k]].contact, rows_.of(rows_.blocks[k]));
+    for (std::size_t k = 0, r = 0; k < acting_joints_.size(); ++k) {
+      KeptJoint& joint = joints_[acting_joints_[k]];
+      const RowBlock& block = rows_.blocks[active_.size() + k];
+      joint.impulses = {}, joint.linear = {}, joint.angular = {};
+      for (const auto& row : rows_.of(block)) {
+        joint.impulses[static_cast<std::size_t>(joint_rows_[r++])] = row.impulse;
+        joint.linear += row.direction * row.impulse;
+        if (row.direction == V{}) joint.angular += row.lever_b * row.impulse;
+      }
+    }
+  }
+
+  void note_greatest_impulses() {
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      auto& contact = contacts_.all()[active_[k]].contact;
+      const auto rows = rows_.of(rows_.blocks[k]);
+      for (std::size_t i = 0; i < contact.size; ++i)
+        contact.points[i].greatest_impulse = std::max(contact.points[i].greatest_impulse, rows[i].impulse);
+    }
+  }
+
+  /// What came in fast leaves with its restitution: all impacts of an island together.
+  void rebound() {
+    const Real threshold = Real(2) * length(world_.gravity) * options_.step;
+    std::vector<bool> rebounds(islands_.size());
+    for (std::size_t island = 0; island < islands_.size(); ++island)
+      for (const std::uint32_t k : islands_.blocks(island)) {
+        if (k >= active_.size()) continue;
+        const auto& contact = contacts_.all()[active_[k]].contact;
+        for (const auto& point : contact.all())
+          if (does_rebound(contact, point, threshold)) rebounds[island] = true;
+      }
+    if (std::ranges::find(rebounds, true) == rebounds.end()) return;
+    for_each_island([&](std::size_t island) {
+      if (!rebounds[island]) return;
+      for (const std::uint32_t k : islands_.blocks(island)) prepare_rebound(k, threshold);
+      solvers_[island].rebound(rows_, bodies_);
+    });
+  }
+  [[nodiscard]] static bool does_rebound(const RigidContact<Real, Dim>& contact,
+                                         const RigidContactPoint<Real, Dim>& point, const Real& threshold) {
+    return contact.restitution > Real(0) && point.greatest_impulse > Real(0) && point.approach < -threshold;
+  }
+  void prepare_rebound(std::uint32_t k, const Real& threshold) {
+    const auto rows = rows_.of(rows_.blocks[k]);
+    for (auto& row : rows) row.impulse = Real(0), row.bias_at_end = Real(0);
+    if (k >= active_.size()) return;
+    const auto& contact = contacts_.all()[active_[k]].contact;
+    for (std::size_t i = 0; i < contact.size; ++i) {
+      const auto& point = contact.points[i];
+      if (does_rebound(contact, point, threshold)) {
+        rows[i].bias_at_end = contact.restitution * point.approach;
+      } else if (point.impulse == Real(0)) {
+        rows[i].mass = Real(0);  // it is open
+      }
+    }
+  }
+
+  [[nodiscard]] bool all_finite() const {
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      if (!is_finite(bodies_[i].x) || !is_finite(bodies_[i].v) || !is_finite(bodies_[i].spin) ||
+          !is_finite(bodies_[i].orientation))
+        return false;
+    return true;
+  }
+  void stop_fast_bodies() {
+    statistics.impacts +=
+        continuo::stop_fast_bodies<Real, Dim>(world_, pairs_, contacts_.all(), options_.step, bodies_);
+  }
+
+  void store() {
+    const std::size_t n = world_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      world_.position[i] = bodies_[i].x, world_.orientation[i] = bodies_[i].orientation;
+      if (!moves(i)) continue;
+      world_.velocity[i] = bodies_[i].v, world_.spin[i] = bodies_[i].spin;
+    }
+    store_joints();
+    const Real steps = std::round(world_.time / options_.step);
+    const bool is_multiple = std::abs(world_.time - steps * options_.step) <=
+                             4 * std::numeric_limits<Real>::epsilon() * std::abs(world_.time);
+    world_.time = is_multiple ? (steps + 1) * options_.step : world_.time + options_.step;
+    note_contacts();
+    if (options_.sleep_after > Real(0)) settle();
+    ++statistics.steps;
+    statistics.contacts = active_.size();
+    statistics.asleep = sleep_.asleep();
+  }
+  void store_joints() {
+    const Real h = substep();
+    for (const std::uint32_t k : acting_joints_) {
+      Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
+      joint.force = joints_[k].linear * (1 / h), joint.torque = joints_[k].angular * (1 / h);
+      joint.motor_effort = joints_[k].impulses[static_cast<std::size_t>(JointRow::motor)] / h;
+      if (joint.kind == JointKind::pull) continue;
+      if (length(joint.force) > joint.breaks_at || length(joint.torque) > joint.breaks_at_torque) {
+        joint.is_broken = true;
+        pairs_.begin(world_);  // the two may collide now
+      }
+    }
+  }
+  [[nodiscard]] bool is_sensor(const PartContact<Real, Dim>& found) const {
+    return world_.has_traits() &&
+           (world_.traits(found.a).is_sensor || (found.b < world_.size() && world_.traits(found.b).is_sensor));
+  }
+  [[nodiscard]] bool touches(const PartContact<Real, Dim>& found) const {
+    return std::ranges::any_of(found.contact.all(), [&](const auto& point) {
+      return separation(found.contact, point, bodies_[found.a], bodies_[found.b]) <= Real(0);
+    });
+  }
+  void note_contacts() {
+    log.clear();
+    if (!log.is_kept()) return;
+    for (const auto& found : contacts_.all()) {
+      ContactEvent<Real, Dim> event{.a = world_.handle(found.a)};
+      for (const auto& point : found.contact.all()) {
+        event.impulse += point.impulse * static_cast<Real>(options_.substeps);
+        event.point += (bodies_[found.a].x + bodies_[found.a].axes * point.local_a) * point.impulse;
+      }
+      const bool is_sensed = is_sensor(found) && touches(found);
+      if (!(event.impulse > Real(0)) && !is_sensed) continue;
+      if (is_sensed) {
+        event.point = bodies_[found.a].x + bodies_[found.a].axes * found.contact.points[0].local_a;
+      } else
+        event.point *= static_cast<Real>(options_.substeps) / event.impulse;
+      event.normal = found.contact.normal;
+      if (found.b >= world_.size()) {
+        event.wall = static_cast<std::uint32_t>(found.b - world_.size());
+      } else {
+        event.b = world_.handle(found.b);
+      }
+      touches_.touch(event);
+    }
+    touches_.end_step(world_.time, log);
+  }
+  void settle() {
+    std::vector<std::uint32_t> alone;
+    for (std::uint32_t i = 0; i < world_.size(); ++i)
+      if (is_alone_[i] && moves(i)) alone.push_back(i);
+    sleep_.settle(world_, islands_, alone, options_.step, options_.sleep_after, options_.sleep_speed);
+    for (std::size_t i = 0; i < world_.size(); ++i) bodies_[i].x = world_.position[i];
+  }
+
+  struct KeptJoint {
+    JointHandle handle{};
+    JointImpulses<Real> impulses{};  // of the last substep
+    bool is_swept = false;           // not solved directly
+    V linear{};
+    S angular{};
+  };
+  template <class Archive>
+  void transfer(Archive& archive) {
+    contacts_.transfer(archive, world_.size() + world_.walls().size());
+    auto joints = static_cast<std::uint64_t>(joints_.size());
+    archive(joints);
+    if constexpr (Archive::reads) {
+      if (joints > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      joints_.assign(static_cast<std::size_t>(joints), {});
+    }
+    for (KeptJoint& joint : joints_)
+      archive(joint.handle.slot), archive(joint.handle.generation), archive(joint.impulses), archive(joint.linear),
+          archive(joint.is_swept);
+    archive(touches_), archive(sleep_);
+  }
+
+  World<Real, Dim>& world_;
+  FastOptions<Real> options_;
+  ThreadTeam team_;
+  std::vector<RigidBody<Real, Dim>> bodies_;
+  RigidPairs<Real, Dim> pairs_;
+  RigidContacts<Real, Dim> contacts_;
+  Constraints<Real, Dim> rows_;
+  std::vector<std::uint32_t> active_;  // the contact of each block of rows
+  std::size_t contact_rows_ = 0;
+  std::vector<JointHandle> joint_handles_;
+  std::vector<KeptJoint> joints_;
+  std::vector<std::uint32_t> acting_joints_;  // the joint of each block after those of contacts
+  std::vector<JointRow> joint_rows_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
+  RigidIslands islands_;
+  std::vector<IslandSolver<Real, Dim>> solvers_;
+  std::vector<ContactHardness<Real>> hardness_;  // of each block
+  std::vector<bool> is_alone_;                   // bodies without contacts and joints
+  std::vector<V> acceleration_;
+  TouchLog<Real, Dim> touches_;
+  RigidSleep<Real, Dim> sleep_;
+  bool is_stale_ = true;
+};
+
+extern template class RigidStepper<float, 2>;
+extern template class RigidStepper<float, 3>;
+extern template class RigidStepper<double, 2>;
+extern template class RigidStepper<double, 3>;
+
+}  // namespace continuo
