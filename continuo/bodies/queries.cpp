@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <continuo/bodies/queries.hpp>
+#include <continuo/shapes/ray_entry.hpp>
 
 namespace continuo {
 
@@ -90,8 +91,9 @@ Queries<Real, Dim>::Queries(const World<Real, Dim>& world) : walls_(world.walls(
   items_.reserve(world.size());
   for (std::size_t i = 0; i < world.size(); ++i)
     if (is_finite(world.position[i]) && is_number(world.radius[i]))
-      items_.push_back(
-          {world.position[i], world.radius[i], static_cast<std::uint32_t>(i), world.group(i), world.handle(i)});
+      items_.push_back({world.position[i], world.radius[i], static_cast<std::uint32_t>(i), world.group(i),
+                        world.handle(i), world.shared_solid(i),
+                        Pose<Real, Dim>{world.position[i], rotation(world.orientation[i])}});
   std::size_t nodes = 1;
   for (std::size_t n = items_.size(); n > leaf; n = (n + 1) / 2) nodes = 2 * nodes + 1;
   boxes_.resize(nodes);
@@ -181,18 +183,35 @@ void Queries<Real, Dim>::wall_hits(const Ray<Real, Dim>& ray, Take&& take) const
   }
 }
 
-namespace {
-
-template <class Real, int Dim, class Item>
-RayHit<Real, Dim> hit_of(const Ray<Real, Dim>& ray, const Item& item, const Real& distance) {
-  RayHit<Real, Dim> hit{.body = item.body, .distance = distance, .point = ray.origin + ray.direction * distance};
-  const Vector<Real, Dim> out = hit.point - item.x;
-  const Real size = length(out);
-  hit.normal = distance > Real(0) && size > Real(0) ? out * (1 / size) : Vector<Real, Dim>(-ray.direction);
-  return hit;
+template <class Real, int Dim>
+Real Queries<Real, Dim>::distance_to(const Item& item, const V& point) {
+  if (!item.solid) return length(V(item.x - point)) - item.radius;
+  Real least = std::numeric_limits<Real>::infinity();
+  const V local = item.pose.local(point);
+  for (const SolidPart<Real, Dim>& part : item.solid->parts)
+    least = std::min(least, signed_distance(part.convex, part.in_solid.local(local)));
+  return least;
 }
 
-}  // namespace
+template <class Real, int Dim>
+RayHit<Real, Dim> Queries<Real, Dim>::hit_of(const Ray<Real, Dim>& ray, const Item& item) {
+  RayHit<Real, Dim> hit{.body = item.body, .distance = distance_along(ray, item.x, item.radius)};
+  if (item.solid && is_number(hit.distance)) {
+    hit.distance = std::numeric_limits<Real>::infinity();
+    for (const SolidPart<Real, Dim>& part : item.solid->parts) {
+      const Pose<Real, Dim> pose{item.pose.place(part.in_solid.centre), item.pose.axes * part.in_solid.axes};
+      const auto entry = ray_entry(part.convex, pose.local(ray.origin), pose.local_direction(ray.direction), ray.reach);
+      if (entry && entry->distance < hit.distance)
+        hit.distance = entry->distance, hit.normal = pose.axes * entry->normal;
+    }
+  }
+  if (!is_number(hit.distance)) return hit;
+  hit.point = ray.origin + ray.direction * hit.distance;
+  const V out = item.solid ? hit.normal : V(hit.point - item.x);
+  const Real size = length(out);
+  hit.normal = hit.distance > Real(0) && size > Real(0) ? out * (1 / size) : V(-ray.direction);
+  return hit;
+}
 
 template <class Real, int Dim>
 Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<Real, Dim>& asked,
@@ -200,18 +219,18 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<R
   Ray<Real, Dim> ray = asked;
   if (Status fault = prepare(ray); !fault) return fault;
   const Item* nearest = nullptr;
+  std::vector<RayHit<Real, Dim>> hits;
   Ray<Real, Dim> left = ray;  // ends at the nearest hit so far
   walk([&](const Box& box) { return entry(left, box.lower, box.upper); },
        [&](const Item& item) {
          if (!takes(filter, item.group)) return;
-         const Real distance = distance_along(left, item.x, item.radius);
-         if (!is_number(distance)) return;
-         if (nearest && distance == left.reach && item.number > nearest->number) return;
+         const RayHit<Real, Dim> hit = hit_of(left, item);
+         if (!is_number(hit.distance)) return;
+         if (nearest && hit.distance == left.reach && item.number > nearest->number) return;
          nearest = &item;
-         left.reach = distance;
+         hits = {hit};
+         left.reach = hit.distance;
        });
-  std::vector<RayHit<Real, Dim>> hits;
-  if (nearest) hits = {hit_of(ray, *nearest, left.reach)};
   if (filter.walls)
     wall_hits(left, [&](const RayHit<Real, Dim>& hit) {
       if (hits.empty() || hit.distance < hits[0].distance) hits = {hit};
@@ -224,16 +243,16 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Re
                                                                     const QueryFilter& filter) const {
   Ray<Real, Dim> ray = asked;
   if (Status fault = prepare(ray); !fault) return fault;
-  std::vector<std::pair<Real, const Item*>> found;
+  std::vector<std::pair<std::uint32_t, RayHit<Real, Dim>>> found;
   walk([&](const Box& box) { return entry(ray, box.lower, box.upper); },
        [&](const Item& item) {
          if (!takes(filter, item.group)) return;
-         const Real distance = distance_along(ray, item.x, item.radius);
-         if (is_number(distance)) found.emplace_back(distance, &item);
+         const RayHit<Real, Dim> hit = hit_of(ray, item);
+         if (is_number(hit.distance)) found.emplace_back(item.number, hit);
        });
-  std::ranges::sort(found, {}, [](const auto& at) { return std::pair(at.first, at.second->number); });
+  std::ranges::sort(found, {}, [](const auto& at) { return std::pair(at.second.distance, at.first); });
   std::vector<RayHit<Real, Dim>> bodies, walls;
-  for (const auto& [distance, item] : found) bodies.push_back(hit_of(ray, *item, distance));
+  for (const auto& [number, hit] : found) bodies.push_back(hit);
   if (filter.walls) wall_hits(ray, [&](const RayHit<Real, Dim>& hit) { walls.push_back(hit); });
   std::ranges::sort(walls, {}, [](const auto& hit) { return std::pair(hit.distance, hit.wall); });
   std::vector<RayHit<Real, Dim>> hits;
@@ -243,6 +262,21 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Re
 }
 
 namespace {
+
+/// Whether a solid has a point in common with a box with its faces along the axes.
+template <class Real, int Dim>
+bool touches_box(const Solid<Real, Dim>& solid, const Pose<Real, Dim>& pose, const Vector<Real, Dim>& lower,
+                 const Vector<Real, Dim>& upper) {
+  Polytope<Real, Dim> box;
+  for (unsigned k = 0; k < 1u << Dim; ++k) {
+    Vector<Real, Dim>& corner = box.corners.emplace_back();
+    for (std::size_t axis = 0; axis < Dim; ++axis) corner[axis] = (k >> axis & 1u) != 0 ? upper[axis] : lower[axis];
+  }
+  return std::ranges::any_of(solid.parts, [&](const SolidPart<Real, Dim>& part) {
+    const Pose<Real, Dim> of_part{pose.place(part.in_solid.centre), pose.axes * part.in_solid.axes};
+    return closest_points(box, part.convex.core, of_part).distance <= part.convex.rounding;
+  });
+}
 
 template <class Found>
 std::vector<BodyHandle> in_order(Found& found) {
@@ -266,7 +300,7 @@ Result<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radiu
                    : Real(0);
       },
       [&](const Item& item) {
-        if (takes(filter, item.group) && length(item.x - centre) <= radius + item.radius) found.push_back(&item);
+        if (takes(filter, item.group) && distance_to(item, centre) <= radius) found.push_back(&item);
       });
   Overlap overlap{in_order(found), {}};
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
@@ -290,7 +324,8 @@ Result<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const
         return Real(0);
       },
       [&](const Item& item) {
-        if (takes(filter, item.group) && distance_to_box(item.x, lower, upper) <= item.radius) found.push_back(&item);
+        if (!takes(filter, item.group) || distance_to_box(item.x, lower, upper) > item.radius) return;
+        if (!item.solid || touches_box(*item.solid, item.pose, lower, upper)) found.push_back(&item);
       });
   Overlap overlap{in_order(found), {}};
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
@@ -326,7 +361,7 @@ Result<std::vector<Neighbour<Real>>> Queries<Real, Dim>::nearest(const V& point,
         },
         [&](const Item& item) {
           if (!takes(filter, item.group)) return;
-          const Found one{length(item.x - point) - item.radius, item.number, item.body};
+          const Found one{distance_to(item, point), item.number, item.body};
           if (found.size() == count) {
             if (!nearer(one, found.front())) return;
             std::ranges::pop_heap(found, nearer);

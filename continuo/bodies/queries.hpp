@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
@@ -66,7 +67,7 @@ class Queries {
  public:
   using V = Vector<Real, Dim>;
 
-  /// Copies positions and radii, and sorts them in O(N log N). The world may change or end afterwards.
+  /// Copies places and shapes, and sorts them in O(N log N). The world may change or end afterwards.
   explicit Queries(const World<Real, Dim>& world);
 
   // All queries fail for invalid arguments: numbers that are not finite, a direction of 0, a negative radius or reach,
@@ -92,11 +93,17 @@ class Queries {
     Real radius{};
     std::uint32_t number = 0, group = 0;
     BodyHandle body{};
+    std::shared_ptr<const Solid<Real, Dim>> solid{};  // null of a ball
+    Pose<Real, Dim> pose{};                           // of the solid
   };
   struct Box {
     V lower{}, upper{};  // of whole bodies
   };
 
+  /// The distance of a point to the surface of a body, below 0 inside.
+  [[nodiscard]] static Real distance_to(const Item& item, const V& point);
+  /// Where a ray hits a body; the distance is not a number where it does not.
+  [[nodiscard]] static RayHit<Real, Dim> hit_of(const Ray<Real, Dim>& ray, const Item& item);
   void build(std::size_t node, std::size_t first, std::size_t last);
   template <class Enter, class Visit>
   void walk(Enter&& enter, Visit&& visit, std::size_t node, std::size_t first, std::size_t last) const;
