@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <continuo/bodies/time_stepping/contact_list.hpp>
+#include <continuo/bodies/time_stepping/hierarchical_grid.hpp>
 #include <continuo/bodies/time_stepping/sorted_cells.hpp>
 
 namespace continuo {
@@ -75,11 +76,15 @@ class BroadPhase {
       reach_[k] = bodies.moves(k) ? reach(k) : Real(0);
     }
     find_far(bodies);
+    sort_by_size(bodies);
     const Rows<std::uint32_t> with_far = pairs_with_far(team, world, bodies);
     make_rows(team, bodies.size(), rows, [&](std::uint32_t k, ContactRows& part) {
       const std::size_t begin = part.entries.size();
       if (!bodies.moves(k)) return;
-      if (!is_far_[k]) list_bodies(world, bodies, all_move, k, part);
+      if (!by_size_.is_empty())
+        list_bodies_by_size(world, bodies, k, part);
+      else if (!is_far_[k])
+        list_bodies(world, bodies, all_move, k, part);
       if (!far_.empty() && !with_far.row(k).empty()) {
         for (const std::uint32_t j : with_far.row(k)) part.entries.push_back({.other = j});
         std::ranges::sort(part.entries.begin() + static_cast<std::ptrdiff_t>(begin), part.entries.end(), {},
@@ -97,6 +102,7 @@ class BroadPhase {
     const auto meet = [&](std::uint32_t j) {
       if (j != i && world.collide(order_[i], order_[j])) visit(j);
     };
+    if (!by_size_.is_empty()) return by_size_.for_each_overlap(bodies.x(i), bodies.radius(i) + way, meet);
     for_each_usual(bodies, bodies.x(i), bodies.radius(i) + way, 0, meet);
     for (const std::uint32_t j : far_) meet(j);
   }
@@ -107,7 +113,7 @@ class BroadPhase {
 
   [[nodiscard]] std::size_t memory() const {
     return order_.capacity() * 4 + far_.capacity() * 4 + is_far_.capacity() + reach_.capacity() * sizeof(Real) +
-           x_of_list_.capacity() * sizeof(V) + cells_.memory();
+           x_of_list_.capacity() * sizeof(V) + cells_.memory() + by_size_.memory();
   }
 
  private:
@@ -131,6 +137,25 @@ class BroadPhase {
         usual_ = std::max(usual_, out);
       }
     }
+  }
+  /// Makes a grid for each size where more than few bodies have a far reach, or more than few reach far further than
+  /// more than few others. Then no body counts as one of far reach.
+  void sort_by_size(const Bodies& bodies) {
+    by_size_.clear();
+    const std::size_t some = few(bodies.size());
+    if (bodies.size() <= 2 * some) return;
+    std::vector<Real> out(bodies.size());
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = bodies.radius(k) + reach_[k];
+    const auto many_times = static_cast<Real>(3);
+    if (far_.size() <= some && usual_ <= many_times * *std::ranges::min_element(out)) return;
+    std::vector<Real> sorted = out;
+    const auto small = sorted.begin() + static_cast<std::ptrdiff_t>(some);
+    const auto large = sorted.end() - 1 - static_cast<std::ptrdiff_t>(some);
+    std::nth_element(sorted.begin(), small, sorted.end());
+    std::nth_element(small, large, sorted.end());
+    if (far_.size() <= some && *large <= many_times * *small) return;
+    far_.clear();
+    by_size_.build(x_of_list_, out, *small);
   }
   /// Row k: the partners of the body at place k in its pairs with at least one body of far reach.
   [[nodiscard]] Rows<std::uint32_t> pairs_with_far(ThreadTeam& team, const World<Real, Dim>& world,
@@ -198,6 +223,17 @@ class BroadPhase {
     });
   }
 
+  void list_bodies_by_size(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t k,
+                           ContactRows& part) const {
+    const std::size_t begin = part.entries.size();
+    by_size_.for_each_overlap(bodies.x(k), bodies.radius(k) + reach_[k], [&](std::uint32_t j) {
+      if (j != k && (j > k || !bodies.moves(j)) && (all_collide_ || world.collide(order_[k], order_[j])))
+        part.entries.push_back({.other = j});
+    });
+    std::ranges::sort(part.entries.begin() + static_cast<std::ptrdiff_t>(begin), part.entries.end(), {},
+                      &ContactEntry::other);
+  }
+
   void list_walls(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t k, ContactRows& part) const {
     const V x = bodies.x(k);
     const Real out = bodies.radius(k) + reach_[k];
@@ -216,6 +252,7 @@ class BroadPhase {
   bool all_collide_ = true;  // no groups pass through each other
   ContactBlocks blocks_{};
   SortedCells<Real, Dim> cells_;
+  HierarchicalGrid<Real, Dim> by_size_;
 };
 
 }  // namespace continuo
