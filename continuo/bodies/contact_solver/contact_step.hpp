@@ -37,7 +37,8 @@ struct ContactStep {
   bool may_strike = false;       // impacts are located in this substep, see restitution.hpp
   Real greatest_acceleration{};  // by forces, where impacts are located
   Real friction{};               // where all have the same
-  Real disturbance{};            // a change of velocity beyond this way per substep disturbs a body
+  Real disturbance{};            // a change of velocity beyond this way per substep disturbs a body,
+  Real disturbance_of_radius{};  // and beyond this part of the larger radius
   std::uint8_t sweep = 1;        // number of a pushing sweep; those after the first solve only disturbed contacts
 };
 

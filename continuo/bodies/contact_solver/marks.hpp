@@ -34,6 +34,21 @@ template <class Real, int Dim>
         std::max(disturbances.sweep_of(batch.a[lane]), disturbances.sweep_of(batch.b[lane])) + 1 >= sweep);
   return is;
 }
+/// Marks the bodies of contacts whose relative velocity has changed by more than this way per substep. For a large body
+/// a lot is more: otherwise one among small ones would have all its contacts solved again in every step. A call, since
+/// it is rare, and inlined would take registers from the kernel.
+template <ContactKind kind, class Real, int Dim>
+[[gnu::noinline]] void mark_moved(const ContactBatch<Real, Dim>& batch,
+                                  const std::array<Real, lanes_at_once<Real>>& way, SolverBodies<Real, Dim>& bodies,
+                                  const ContactStep<Real>& step) {
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    Real radius = bodies.radius(batch.a[lane]);
+    if (kind == ContactKind::between_movers) radius = std::max(radius, bodies.radius(batch.b[lane]));
+    if (way[lane] <= std::max(step.disturbance, step.disturbance_of_radius * radius)) continue;
+    bodies.disturbances.mark(batch.a[lane], step.sweep);
+    if (kind == ContactKind::between_movers) bodies.disturbances.mark(batch.b[lane], step.sweep);
+  }
+}
 /// Marks the bodies of contacts whose relative velocity has changed by a lot; `change` is that change.
 template <ContactKind kind, class Real, int Dim>
 void mark_disturbed(const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& change,
@@ -41,11 +56,9 @@ void mark_disturbed(const ContactBatch<Real, Dim>& batch, const ContactLanes<Rea
   using L = ContactLanes<Real>;
   const L way = abs(change) * L(step.h);
   if (all(way <= L(step.disturbance))) return;
-  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
-    if (way[lane] <= step.disturbance) continue;
-    bodies.disturbances.mark(batch.a[lane], step.sweep);
-    if (kind == ContactKind::between_movers) bodies.disturbances.mark(batch.b[lane], step.sweep);
-  }
+  std::array<Real, lanes_at_once<Real>> lanes;
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) lanes[lane] = way[lane];
+  mark_moved<kind>(batch, lanes, bodies, step);
 }
 
 }  // namespace continuo

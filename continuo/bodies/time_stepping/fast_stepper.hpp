@@ -275,11 +275,13 @@ class FastMotion<Real, Dim>::Stepper {
     // At a frequency of 0.45 of the rate of substeps or more, a column of balls under a mass of ten balls never comes
     // to rest. The threshold of a disturbance was found by measurement: it keeps the overlaps in a falling heap below a
     // hundredth of the radius.
+    constexpr auto disturbance = static_cast<Real>(0.0008);
     return {.h = h,
             .soft = softness(hertz_of(h), options_.damping, h),
             .fastest_push = options_.fastest_push,
             .friction = friction_,
-            .disturbance = Real(0.0008) * list_.median_radius()};
+            .disturbance = disturbance * list_.median_radius(),
+            .disturbance_of_radius = disturbance};
   }
   void make_impacts(ContactStep<Real>& step, const Real& now) {
     step.may_strike = may_bounce_ || may_strike(bodies_, step.h, Real(0.2), Real(0));
