@@ -44,19 +44,20 @@ class SortedCells {
   /// row by row.
   template <class Visit>
   void for_each_row(const V& lower, const V& upper, Visit&& visit) const {
-    const auto from = coordinates(lower), to = coordinates(upper);
-    auto at = from;
+    const Coordinates from = coordinates(lower), to = coordinates(upper);
+    const std::size_t cells = to[axes_[0]] - from[axes_[0]] + 1;
+    Coordinates at = from;
+    std::size_t cell = number(from);
     for (;;) {
-      auto end = at;
-      end[axes_[0]] = to[axes_[0]];
-      visit(first_[number(at)], first_[number(end) + 1]);
+      visit(first_[cell], first_[cell + cells]);
       std::size_t i = 1;
-      while (i < at.size() && at[axes_[i]] == to[axes_[i]]) {
+      for (; i < at.size() && at[axes_[i]] == to[axes_[i]]; ++i) {
+        cell -= stride_[i] * (to[axes_[i]] - from[axes_[i]]);
         at[axes_[i]] = from[axes_[i]];
-        ++i;
       }
       if (i == at.size()) return;
       ++at[axes_[i]];
+      cell += stride_[i];
     }
   }
 
@@ -86,6 +87,8 @@ class SortedCells {
         // The longest axis comes last: then neighbours along it are as near in memory as they can be.
         for (std::size_t axis = 0; axis < V::size(); ++axis) axes_[axis] = axis;
         std::ranges::sort(axes_, {}, [&](std::size_t axis) { return std::pair(count_[axis], axis); });
+        stride_[0] = 1;
+        for (std::size_t i = 1; i < axes_.size(); ++i) stride_[i] = stride_[i - 1] * count_[axes_[i - 1]];
         total_ = static_cast<std::size_t>(cells);
         return;
       }
@@ -101,13 +104,14 @@ class SortedCells {
   }
   [[nodiscard]] std::size_t number(const Coordinates& at) const {
     std::size_t n = 0;
-    for (std::size_t i = at.size(); i-- > 0;) n = n * count_[axes_[i]] + at[axes_[i]];
+    for (std::size_t i = 0; i < at.size(); ++i) n += at[axes_[i]] * stride_[i];
     return n;
   }
 
   V lower_{}, upper_{};
   Real edge_ = Real(1);
   Coordinates count_{}, axes_{};  // axes_: in the order of the cells, the one along which the next cell lies first
+  Coordinates stride_{};          // from a cell to the next one along axes_[i]
   std::size_t total_ = 0;
   std::vector<std::uint32_t> first_;
 };
