@@ -39,6 +39,9 @@ concept ExplicitRungeKuttaMethod = requires {
   { M::tableau.first_same_as_last() } -> std::convertible_to<bool>;
 } && !is_implicit<M>();
 
+template <class M, class X>
+concept MethodForLanes = ExplicitRungeKuttaMethod<M, X> || RosenbrockForLanes<M>;
+
 /// Why no run can begin: what is wrong for the first one, and is not its state. Empty where they can.
 template <class M, State X, State P, class F, class... E>
 [[nodiscard]] std::string problem_of_all(F& f, const RunStart<X, P>& first, const RunSettings<X, P, E...>& settings) {
@@ -56,9 +59,10 @@ template <class M, State X, State P, class F, class... E>
 /// Integrates dx/dt = f(t, x, p) over the interval for every start, W runs or more at once on each thread. f is called
 /// with lanes of numbers and with plain ones: it is a template over both (`auto`), has no `if` on its numbers (see
 /// `select`), and is written as f(t, x, dxdt, p), or to return dx/dt as f(t, x, p); without p for starts that have no
-/// parameters. Each thread has a copy of f. The method is an explicit Runge-Kutta method. Events are those of `falls`,
-/// `rises`, `crosses`, `at` and `every`: a guard may take (t, x, p), an action (now, p), and changes p for its run
-/// alone. A run that fails is a result with its outcome, as of `solve`.
+/// parameters. Each thread has a copy of f. The method is an explicit Runge-Kutta method, or for stiff systems a
+/// Rosenbrock method, which takes f.jacobian(t, x, rows, p) where f has it, else differences. Events are those of
+/// `falls`, `rises`, `crosses`, `at` and `every`: a guard may take (t, x, p), an action (now, p), and changes p for its
+/// run alone. A run that fails is a result with its outcome, as of `solve`.
 template <std::size_t W = default_lanes, class F, RunStarts Starts, class M, class... Events>
 [[nodiscard]] Ensemble<detail::StateOf<Starts>, detail::ParametersOf<Starts>> ensemble(
     const F& f, const Starts& starts, Interval<double> interval, M,
@@ -66,8 +70,14 @@ template <std::size_t W = default_lanes, class F, RunStarts Starts, class M, cla
     const Events&... events) {
   using X = detail::StateOf<Starts>;
   using P = detail::ParametersOf<Starts>;
-  static_assert(detail::ExplicitRungeKuttaMethod<M, X>,
-                "an ensemble takes an explicit Runge-Kutta method, such as Dop853{} or Rk4{}");
+  static_assert(detail::MethodForLanes<M, X>,
+                "an ensemble takes an explicit Runge-Kutta method, such as Dop853{} or Rk4{}, or for stiff systems a "
+                "Rosenbrock method, such as Rodas5P{}");
+  static_assert(!detail::RosenbrockForLanes<M> || !(detail::has_guard<Events> || ...),
+                "an ensemble by a Rosenbrock method has no guards, only events at given times: its steps would have to "
+                "end at the crossings");
+  static_assert(!HasMassDiagonal<F, X> && !HasMassMatrix<F, X>,
+                "an ensemble would ignore the mass matrix of the system: divide by the masses in f");
   Ensemble<X, P> result;
   (result.event_names.push_back(events.name), ...);
   if (starts.size() == 0) return result;

@@ -15,6 +15,7 @@
 #include <continuo/ensembles/lanes/lane_sizes.hpp>
 #include <continuo/ensembles/lanes/own_runs.hpp>
 #include <continuo/ensembles/lanes/pair_of_lane.hpp>
+#include <continuo/ensembles/lanes/rosenbrock_lanes.hpp>
 #include <continuo/ensembles/lanes/run_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_queue.hpp>
 #include <continuo/numerics/bernstein.hpp>
@@ -50,6 +51,10 @@ class LaneDriver {
     runs_.reserve(W);
     for (std::size_t lane = 0; lane < W; ++lane) runs_.emplace_back(f_, settings_, as_run_start(starts[0]));
     if constexpr (PartOfPair<M>) pairs_.assign(W, {as_run_start(starts[0]).x, settings.options});
+    if constexpr (is_rosenbrock) {
+      work_.tolerance = tolerance_.all();
+      rosenbrock_.emplace(f_, as_run_start(starts[0]), x_, settings.options);
+    }
   }
   LaneDriver(const LaneDriver&) = delete;
   LaneDriver& operator=(const LaneDriver&) = delete;
@@ -104,8 +109,10 @@ class LaneDriver {
   using WideP = ReboundState<P, Wide>;
   using Run = typename RunKind<F, X, P, M, E...>::Type;
   using Source = typename Run::Source;
+  using RosenbrockSteps = StepsOfRosenbrock<M, F, X, P, W>;
 
   static constexpr bool has_own_runs = HasOwnRuns<F, M>;
+  static constexpr bool is_rosenbrock = RosenbrockForLanes<M>;
 
   static constexpr bool is_small = [] {
     if constexpr (FixedSize<X>) {
@@ -117,7 +124,7 @@ class LaneDriver {
 
  public:
   /// Whether steps of a fixed size may need no look at each.
-  static constexpr bool can_step_freely = is_small && !Run::has_events;
+  static constexpr bool can_step_freely = is_small && !Run::has_events && !is_rosenbrock;
   /// The runs of a driver while they take steps of a fixed size at which nothing is looked at.
   struct FreeMotion {
     SystemWithParameters<F, WideP> system;
@@ -189,6 +196,7 @@ class LaneDriver {
     auto start = as_run_start(starts_[run]);
     Run& one = runs_[lane];
     sizes_.begin_run(lane);
+    if constexpr (is_rosenbrock) rosenbrock_->begin_run(lane, work_);
     ++active_;
     if (start.x.size() != x_.size() || start.p.size() != system_.p.size()) {
       static_cast<void>(one.begin(run, as_run_start(starts_[0])));
@@ -209,6 +217,7 @@ class LaneDriver {
       if (size == 0) return finish(lane);
     }
     if constexpr (PartOfPair<M>) pairs_[lane].begin_anew();
+    if constexpr (is_rosenbrock) rosenbrock_->begin_motion(lane);
     put(one.x(), lane, x_);
     put(one.p(), lane, system_.p);
     sizes_.begin_motion(lane, one.t(), size, limit);
@@ -228,9 +237,25 @@ class LaneDriver {
     if (!sizes_.is_active(lane)) return;
     Run& one = runs_[lane];
     set_place(lane);
-    one.result().outcome = one.steps().failure(refusal.ending, sizes_.t()[lane], sizes_.h()[lane], refusal.error,
-                                               one.x(), worst_component(lane), settings_.options);
+    X x_new = one.x();
+    if (is_solved(lane)) get(x_new_, lane, x_new);
+    one.result().outcome = one.steps().failure({.ending = refusal.ending,
+                                                .t = sizes_.t()[lane],
+                                                .h = sizes_.h()[lane],
+                                                .error = refusal.error,
+                                                .x = one.x(),
+                                                .x_new = x_new,
+                                                .worst = worst_component(lane)},
+                                               settings_.options);
     finish(lane);
+  }
+  // Whether the last step has an end.
+  [[nodiscard]] bool is_solved(std::size_t lane) const {
+    if constexpr (is_rosenbrock) {
+      return rosenbrock_->solved()[lane];
+    } else {
+      return true;
+    }
   }
   void set_place(std::size_t lane) {
     X x = runs_[lane].x();
@@ -263,7 +288,11 @@ class LaneDriver {
 
   void step() {
     has_square_ = false;
-    if constexpr (is_small) {
+    if constexpr (is_rosenbrock) {
+      has_square_ = M::error_order > 0 && !sizes_.fixed();
+      rosenbrock_->step(system_, sizes_.t(), x_, sizes_.h(), sizes_.active(), tolerance_.all(), work_, x_new_,
+                        has_square_ ? &square_ : nullptr);
+    } else if constexpr (is_small) {
       flat_step();
     } else if (!take_own_step()) {
       static_cast<void>(M::step(system_, sizes_.t(), x_, sizes_.h(), false, work_, x_new_));
@@ -330,6 +359,9 @@ class LaneDriver {
 
   // f at the beginning of the step, for the lanes that have not kept it from the step before.
   void refresh() {
+    if constexpr (!is_rosenbrock) refresh_slopes();
+  }
+  void refresh_slopes() {
     const auto fresh = fresh_ != Wide(0.0), active = sizes_.active();
     work_.start_fresh = true;
     if (none(active & fresh)) {
@@ -350,6 +382,7 @@ class LaneDriver {
     if constexpr (M::error_order > 0) {
       if (!sizes_.fixed()) {
         if (!has_square_) square_ = M::error_square(work_, sizes_.h(), x_, x_new_, tolerance_.all());
+        if constexpr (is_rosenbrock) return sizes_.judge(square_, M::error_order, rosenbrock_->statuses());
         if constexpr (PartOfPair<M>) {
           const Wide norm = strictness() * sqrt(square_);
           square_ = norm * norm;
@@ -357,7 +390,12 @@ class LaneDriver {
         return sizes_.judge(square_, M::error_order);
       }
     }
-    sizes_.judge_fixed(zero_if_all_finite(x_new_));
+    Wide nothing = zero_if_all_finite(x_new_);
+    if constexpr (is_rosenbrock) {
+      nothing = select(rosenbrock_->solved(), nothing, Wide(1.0));
+      return sizes_.judge_fixed(nothing, rosenbrock_->statuses());
+    }
+    sizes_.judge_fixed(nothing);
   }
 
   [[nodiscard]] bool any_guard() const {
@@ -406,6 +444,13 @@ class LaneDriver {
   // f at the end of a step is that at the start of the next one, where the method computes it, or the polynomial of the
   // step has needed it. It is kept by the lanes that have asked for it, whatever their neighbours do.
   void keep_slopes(const Wide& asked) {
+    if constexpr (is_rosenbrock) {
+      rosenbrock_->accept(sizes_.accepted());
+    } else {
+      keep_explicit_slopes(asked);
+    }
+  }
+  void keep_explicit_slopes(const Wide& asked) {
     constexpr bool always = M::tableau.first_same_as_last();
     M::accept(work_, sizes_.accepted());
     if constexpr (!always) fresh_ = select(sizes_.accepted(), asked, fresh_);
@@ -517,8 +562,9 @@ class LaneDriver {
   bool has_square_ = false;
   std::vector<Run> runs_;
   std::vector<PairOfLane<M, X>> pairs_;  // where the method is part of one
-  bool has_rows_;                        // or somebody who may want to see pieces of the motion
-  bool exhausted_ = false;               // no run is left to begin
+  std::optional<RosenbrockSteps> rosenbrock_;
+  bool has_rows_;           // or somebody who may want to see pieces of the motion
+  bool exhausted_ = false;  // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
   std::size_t one_by_one_ = 0;          // so many of the next steps are not free: a run escapes in one of them
   std::optional<std::size_t> pending_;  // a run that waits for room

@@ -145,8 +145,12 @@ class LaneSizes {
     t_ = select(active(), grid_ + grid_steps_ * fixed_size(), t_);
   }
 
-  /// Judges a step by the squares of its errors, in units of the tolerance.
-  void judge(const Wide& square, int error_order) {
+  /// How the equations of each lane's step have ended; null where there are none.
+  using Statuses = std::array<StepStatus, W>;
+
+  /// Judges a step by the squares of its errors, in units of the tolerance. That of a step whose equations were not
+  /// solved is infinite.
+  void judge(const Wide& square, int error_order, const Statuses* statuses = nullptr) {
     accepted_ = active() & (square <= Wide(1.0));  // not where it is not a number
     const Wide good = select(accepted_, Wide(1.0), Wide(0.0));
     const Wide factor = factors_of(square, good, error_order);
@@ -159,22 +163,27 @@ class LaneSizes {
     carried_ = select(accepted_, select(last_, Wide(0.0), wanted - (end_ - t_)), carried_);
     steps_ += good;
     if (any(active() & !accepted_)) [[unlikely]]
-      reject(square.values(), error_order);
+      reject(square.values(), error_order, statuses);
     if (any(accepted_ & !last_ & (end_ == t_))) [[unlikely]]
       stand_still();
   }
-  /// Judges a step of fixed size: `nothing` is 0 where the new state is finite.
-  void judge_fixed(const Wide& nothing) {
-    accepted_ = active() & (nothing == Wide(0.0));
+  /// Judges a step of fixed size: `nothing` is 0 where its equations were solved and the new state is finite.
+  void judge_fixed(const Wide& nothing, const Statuses* statuses = nullptr) {
+    const Mask stands = (on_grid_ == t_) & !last_;
+    accepted_ = active() & !stands & (nothing == Wide(0.0));
     end_ = select(last_, limit_, on_grid_);
     steps_ += select(accepted_, Wide(1.0), Wide(0.0));
     grid_steps_ = select(short_, Wide(0.0), grid_steps_ + Wide(1.0));
     grid_ = select(short_, limit_, grid_);
-    for (std::size_t lane = 0; any(active() & !accepted_) && lane < W; ++lane)
-      if (is_active(lane) && !accepted_[lane]) refuse(lane, Ending::not_finite, 0);
-    if (any(accepted_ & !last_ & (end_ == t_))) [[unlikely]]
-      for (std::size_t lane = 0; lane < W; ++lane)
-        if (accepted_[lane] && !last_[lane] && end_[lane] == t_[lane]) refuse(lane, Ending::step_too_small, 0);
+    for (std::size_t lane = 0; any(active() & !accepted_) && lane < W; ++lane) {
+      if (!is_active(lane) || accepted_[lane]) continue;
+      const bool is_singular = statuses && (*statuses)[lane] == StepStatus::singular_matrix;
+      refuse(lane,
+             stands[lane]  ? Ending::step_too_small
+             : is_singular ? Ending::nonlinear_solve_failed
+                           : Ending::not_finite,
+             0);
+    }
   }
   /// The accepted lanes go on to the end of their step. Those with too many steps are refused another one.
   void commit() {
@@ -213,24 +222,27 @@ class LaneSizes {
     rejects_ = select(keep, Floats(0.0F), rejects_);
     return bounded.template to<Wide>();
   }
-  [[gnu::noinline]] void reject(const std::array<double, W>& squares, int error_order) {
+  [[gnu::noinline]] void reject(const std::array<double, W>& squares, int error_order, const Statuses* statuses) {
     for (std::size_t lane = 0; lane < W; ++lane) {
       if (!is_active(lane) || accepted_[lane]) continue;
       rejected_[lane] += 1;
       const double square = squares[lane];
-      const bool finite = square < std::numeric_limits<double>::infinity();
-      const double factor = finite ? static_cast<double>(ErrorHistory::reject(
-                                         controller_, error_order, static_cast<float>(std::min(square, 1e30))))
-                                   : 0.2;
+      const StepStatus status = statuses ? (*statuses)[lane] : StepStatus::done;
+      const bool solved = status == StepStatus::done, finite = square < std::numeric_limits<double>::infinity();
+      const double factor = !solved   ? 0.25
+                            : !finite ? 0.2
+                                      : static_cast<double>(ErrorHistory::reject(
+                                            controller_, error_order, static_cast<float>(std::min(square, 1e30))));
       const double begin = t_[lane], h = h_[lane] * factor;
       next_.set(lane, h);
       const bool too_many = rejects_[lane] >= max_rejects_;
       const double spacing = std::numeric_limits<double>::epsilon() * std::max(std::abs(begin), std::abs(begin + h));
       if (std::abs(h) <= 4 * spacing || too_many) {
         refuse(lane,
-               !finite    ? Ending::not_finite
-               : too_many ? Ending::too_many_rejects
-                          : Ending::step_too_small,
+               status == StepStatus::singular_matrix ? Ending::nonlinear_solve_failed
+               : !finite                             ? Ending::not_finite
+               : too_many                            ? Ending::too_many_rejects
+                                                     : Ending::step_too_small,
                std::sqrt(square));
       }
       rejects_.set(lane, rejects_[lane] + 1.0F);

@@ -98,19 +98,35 @@ class RunSteps final : public Steps<System, X> {
   /// Whether the polynomial of the step has been evaluated.
   [[nodiscard]] bool asked() const { return asked_; }
 
-  /// Why no step from x at t is accepted, as `solve` says it.
-  [[nodiscard]] Outcome<double> failure(Ending ending, double t, double h, double error, const X& x, std::size_t worst,
-                                        const Options<X>& options) {
+  /// A step of size h from x at t that is not accepted, or not tried.
+  struct Refused {
+    Ending ending;
+    double t, h, error;
+    const X &x, &x_new;
+    std::size_t worst;  // the component of the greatest error
+  };
+  /// Why it is not, as `solve` says it.
+  [[nodiscard]] Outcome<double> failure(const Refused& step, const Options<X>& options) {
     Outcome<double> outcome;
-    this->jump(t, x, options);
-    this->x_begin_ = x;
-    this->h_ = h;
-    if (ending == Ending::not_finite) {
+    this->jump(step.t, step.x, options);
+    this->x_begin_ = step.x;
+    this->h_ = step.h;
+    const auto fail = [&](std::string component, const char* hint) {
+      static_cast<void>(this->fail(step.ending, step.error, std::move(component), hint, outcome));
+    };
+    if (step.ending == Ending::too_many_steps) {
+      fail({}, "raise max_steps or loosen the tolerance");
+    } else if (step.ending == Ending::nonlinear_solve_failed) {
+      static_cast<void>(this->fail_to_solve(StepStatus::singular_matrix, options, outcome));
+    } else if (Base::fixed(options) && step.ending == Ending::not_finite) {
+      fail(this->first_not_finite(step.x_new),
+           "f, its Jacobian or the state is not finite: take a smaller step, or a method with error control");
+    } else if (Base::fixed(options)) {
+      fail({}, "the step is below the spacing of numbers at t: take a longer one");
+    } else if (step.ending == Ending::not_finite) {
       static_cast<void>(this->fail_not_finite(outcome));
     } else {
-      const bool steps = ending == Ending::too_many_steps;
-      static_cast<void>(this->fail(ending, error, steps ? std::string() : component_name(this->system_, worst),
-                                   steps ? "raise max_steps or loosen the tolerance" : Base::singular_hint, outcome));
+      fail(component_name(this->system_, step.worst), Base::singular_hint);
     }
     return outcome;
   }

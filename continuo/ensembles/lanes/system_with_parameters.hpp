@@ -1,8 +1,10 @@
 // A system together with the parameters of one run, or of one run per lane: as the steppers call it, f(t, x, dxdt).
 #pragma once
 #include <cstddef>
+#include <span>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include <continuo/numerics/state.hpp>
 #include <continuo/system/system.hpp>
@@ -15,11 +17,24 @@ inline constexpr bool has_parameters = true;
 template <FixedSize P>
 inline constexpr bool has_parameters<P> = std::tuple_size_v<P> > 0;
 
+/// Whether f depends on t, where f says so.
+template <class F>
+struct AutonomyOf {
+  explicit AutonomyOf(const F&) {}
+};
+template <KnowsAutonomous F>
+struct AutonomyOf<F> {
+  explicit AutonomyOf(const F& f) : autonomous(f.autonomous) {}
+  bool autonomous;
+};
+
 /// f and p. The function is not owned.
 template <class F, class P>
-struct SystemWithParameters {
+struct SystemWithParameters : AutonomyOf<F> {
   F* f;
   P p;
+
+  SystemWithParameters(F* f_, P p_) : AutonomyOf<F>(*f_), f(f_), p(std::move(p_)) {}
 
   template <State X>
   [[gnu::always_inline]] void operator()(const Scalar<X>& t, const X& x, X& dxdt) {
@@ -30,6 +45,30 @@ struct SystemWithParameters {
     } else {
       dxdt = (*f)(t, x, static_cast<const P&>(p));
     }
+  }
+
+  /// df/dx and df/dt, where f has them: with the parameters as its last argument, if there are any.
+  template <State X>
+    requires(!has_parameters<P> && HasJacobian<F, X>)
+  void jacobian(const Scalar<X>& t, const X& x, std::span<Scalar<X>> rows) {
+    f->jacobian(t, x, rows);
+  }
+  template <State X>
+    requires requires(F& g, const Scalar<X>& t, const X& x, std::span<Scalar<X>> rows, const P& q) {
+      g.jacobian(t, x, rows, q);
+    }
+  void jacobian(const Scalar<X>& t, const X& x, std::span<Scalar<X>> rows) {
+    f->jacobian(t, x, rows, static_cast<const P&>(p));
+  }
+  template <State X>
+    requires(!has_parameters<P> && HasTimeDerivative<F, X>)
+  void time_derivative(const Scalar<X>& t, const X& x, X& dfdt) {
+    f->time_derivative(t, x, dfdt);
+  }
+  template <State X>
+    requires requires(F& g, const Scalar<X>& t, const X& x, X& dfdt, const P& q) { g.time_derivative(t, x, dfdt, q); }
+  void time_derivative(const Scalar<X>& t, const X& x, X& dfdt) {
+    f->time_derivative(t, x, dfdt, static_cast<const P&>(p));
   }
 };
 
