@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <continuo/simulation/program/jumps.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::model {
