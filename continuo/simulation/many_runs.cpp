@@ -7,7 +7,7 @@
 #include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
-#include <continuo/symbolic/native/native_compiler.hpp>
+#include <continuo/simulation/together/lane_code.hpp>
 
 namespace continuo::model {
 
@@ -51,14 +51,12 @@ std::size_t steps_together(const Plan& plan, std::size_t limit) {
 /// The runs [first, last) go together.
 class Together final : public RunWatcher<X>, public SeenRuns {
  public:
-  using CodeFor = std::function<std::shared_ptr<NativeFunction>(const std::string& method, std::size_t mode)>;
-
-  Together(const std::shared_ptr<const ModelProgram>& program, bool has_events, CodeFor code_for,
+  Together(const std::shared_ptr<const ModelProgram>& program, bool has_events, LaneCode& code,
            std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
            std::span<Planned> planned, const OnJudged& done)
       : program_(program),
         has_events_(has_events),
-        code_for_(std::move(code_for)),
+        code_(code),
         experiments_(experiments),
         watchers_(watchers),
         planned_(planned),
@@ -129,11 +127,13 @@ class Together final : public RunWatcher<X>, public SeenRuns {
   void make_equations(const std::string& method) {
     method_ = method;
     if (!has_events_) {
-      equations_.emplace(*program_, code_for_(method_, 0));
+      std::optional<LaneDerivatives> derivatives;
+      if (asks_for_derivatives(method_)) derivatives = code_.derivatives();
+      equations_.emplace(*program_, code_.rates(method_, 0), 0, std::move(derivatives));
       return;
     }
     std::vector<std::shared_ptr<NativeFunction>> codes;
-    for (std::size_t mode = 0; mode < program_->derivatives.size(); ++mode) codes.push_back(code_for_(method_, mode));
+    for (std::size_t mode = 0; mode < program_->derivatives.size(); ++mode) codes.push_back(code_.rates(method_, mode));
     mode_equations_.emplace(program_, codes, *this);
   }
   [[nodiscard]] MotionWatcher* watcher(std::size_t i) const { return watchers_.empty() ? nullptr : watchers_[i]; }
@@ -195,7 +195,7 @@ class Together final : public RunWatcher<X>, public SeenRuns {
 
   const std::shared_ptr<const ModelProgram>& program_;
   bool has_events_;
-  CodeFor code_for_;
+  LaneCode& code_;
   std::string method_;                      // that the code of the equations is for
   std::optional<LaneEquations> equations_;  // one of the two is used
   std::optional<ModeEquations> mode_equations_;
@@ -210,11 +210,14 @@ class Together final : public RunWatcher<X>, public SeenRuns {
 };
 
 /// The end of the runs from `first` on that agree with that one.
-std::size_t end_of_group(std::span<const Planned> planned, std::span<const Experiment> experiments, std::size_t first) {
+std::size_t end_of_group(const Model& model, bool has_events, std::span<const Planned> planned,
+                         std::span<const Experiment> experiments, std::size_t first) {
   const Planned& one = planned[first];
-  if (!one.plan || !has_lanes(one.plan->method, one.plan->step > 0) || !is_plain(experiments[first]) ||
-      one.plan->from == one.plan->to)
-    return first + 1;
+  const auto is_in_lanes = [&] {
+    return has_lanes(one.plan->method,
+                     {.has_events = has_events, .has_fixed_steps = one.plan->step > 0, .states = model.states.size()});
+  };
+  if (!one.plan || !is_in_lanes() || !is_plain(experiments[first]) || one.plan->from == one.plan->to) return first + 1;
   std::size_t last = first + 1;
   while (last < planned.size() && planned[last].plan && agree(*one.plan, *planned[last].plan) &&
          is_plain(experiments[last]) && agree(experiments[first], experiments[last]))
@@ -244,27 +247,19 @@ Company company_of(const ModelProgram& program) {
 }  // namespace
 
 ManyRuns::ManyRuns(std::shared_ptr<const ModelProgram> program)
-    : program_(std::move(program)), can_go_together_(company_of(*program_) != Company::none) {}
-
-std::shared_ptr<NativeFunction> ManyRuns::code_for(const std::string& method, std::size_t mode) const {
-  if (!program_->model.native) return nullptr;
-  const std::scoped_lock lock(mutex_);
-  std::shared_ptr<NativeFunction>& code = codes_[{method, mode}];
-  if (!code) code = program_->model.native->lane_code(program_->derivatives[mode], step_formula(method));
-  return code;
-}
+    : program_(std::move(program)),
+      can_go_together_(company_of(*program_) != Company::none),
+      code_(std::make_shared<LaneCode>(program_)) {}
 
 void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
                     const OnJudged& done) const {
   std::vector<Planned> planned(experiments.size());
   for (std::size_t i = 0; can_go_together_ && i < experiments.size(); ++i)
     planned[i].plan = plan_run(*program_, experiments[i], planned[i].problems);
-  Together runs(
-      program_, company_of(*program_) == Company::with_events,
-      [this](const std::string& method, std::size_t mode) { return code_for(method, mode); }, experiments, watchers,
-      planned, done);
+  const bool has_events = company_of(*program_) == Company::with_events;
+  Together runs(program_, has_events, *code_, experiments, watchers, planned, done);
   for (std::size_t first = 0, last = 0; first < experiments.size(); first = last) {
-    last = can_go_together_ ? end_of_group(planned, experiments, first) : first + 1;
+    last = can_go_together_ ? end_of_group(program_->model, has_events, planned, experiments, first) : first + 1;
     if (!(last > first + 1 ? runs.run(first, last) : runs.run_alone(first))) return;
   }
 }

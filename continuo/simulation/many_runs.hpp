@@ -7,13 +7,9 @@
 #pragma once
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <continuo/simulation/motion_watcher.hpp>
@@ -21,7 +17,7 @@
 
 namespace continuo::model {
 
-class NativeFunction;  // symbolic/native/native_function.hpp
+class LaneCode;  // simulation/together/lane_code.hpp
 
 /// A run without its rows, or why there is none: as in Simulated.
 struct JudgedRun {
@@ -44,19 +40,16 @@ class ManyRuns {
   [[nodiscard]] bool can_go_together() const { return can_go_together_; }
 
   /// Makes the runs, which are handed over in their order. `watchers`: none, or for each run one that sees it, or null.
-  /// Together go those, next to each other in the list, that have an explicit Runge-Kutta method and agree in all but
-  /// parameters, inputs and initial values. A run that fails is made once more by `simulate`, which says why.
+  /// Together go those, next to each other in the list, that have an explicit Runge-Kutta method, or without events
+  /// `rodas5p`, and agree in all but parameters, inputs and initial values. A run that fails is made once more by
+  /// `simulate`, which says why.
   void make(std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
             const OnJudged& done) const;
 
  private:
-  /// The machine code of a mode's equations with the steps of this method; null where nobody compiles any.
-  [[nodiscard]] std::shared_ptr<NativeFunction> code_for(const std::string& method, std::size_t mode) const;
-
   std::shared_ptr<const ModelProgram> program_;
   bool can_go_together_;
-  mutable std::mutex mutex_;
-  mutable std::map<std::pair<std::string, std::size_t>, std::shared_ptr<NativeFunction>> codes_;  // by method and mode
+  std::shared_ptr<LaneCode> code_;
 };
 
 }  // namespace continuo::model

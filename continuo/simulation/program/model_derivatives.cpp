@@ -1,58 +1,27 @@
 // continuo/simulation/program/model_derivatives.cpp
-// Compiles and evaluates df/dx and df/dt of a model, dense, banded or by pattern.
+// Evaluates df/dx and df/dt of a model, dense, banded or by pattern.
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
+#include <continuo/simulation/program/derivative_tapes.hpp>
 #include <continuo/simulation/program/model_derivatives.hpp>
-#include <continuo/symbolic/graph/derivative.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
 
 namespace continuo::model {
 
-namespace {
-/// Of a sliding motion each component may depend on each other one.
-constexpr std::size_t largest_full = 100;
-}  // namespace
-
 ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const double> variables, bool held) {
-  // The derivatives are new nodes, so they need a graph of their own; inputs stay as they are: none is a state.
-  ModelProgram own(program.model);
-  own.tables = program.tables;
-  own.linear_inputs = program.linear_inputs;
-  own.switch_variables = program.switch_variables;
-  bool slides = false;
-  for (std::size_t mode = 0; held && mode < own.model.modes.size(); ++mode) {
-    if (program.switches[mode].empty()) continue;
-    own.model.modes[mode].derivatives = program.switches[mode].derivatives;
-    slides = slides || program.switches[mode].slides;
-  }
-  const Model& model = own.model;
-  std::vector<std::uint32_t> columns(model.states.size());
-  std::iota(columns.begin(), columns.end(), model.layout.states);
-  constexpr std::uint32_t time[] = {Layout::time};
-  std::vector<std::vector<JacobianEntry>> entries;
-  std::vector<MatrixPlace> all;
-  for (const Mode& mode : model.modes) {
-    for (const JacobianEntry& entry : entries.emplace_back(model::jacobian(own.model.graph, mode.derivatives, columns)))
-      all.push_back({entry.row, entry.column});
-  }
-  for (std::uint32_t row = 0; slides && columns.size() <= largest_full && row < columns.size(); ++row)
-    for (std::uint32_t column = 0; column < columns.size(); ++column) all.push_back({row, column});
-  pattern_ = SparsePattern(columns.size(), all);
+  DerivativeTapes tapes = derivative_tapes(program, held);
+  pattern_ = std::move(tapes.pattern);
   if (pattern_.is_banded()) places_in_band_ = pattern_.places_in_band();
-  for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
+  for (DerivativeTapes::OfMode& found : tapes.modes) {
+    if (program.model.native) program.model.native->watch(found.entries);
     OfMode& mine = modes_.emplace_back();
-    std::vector<NodeId> nodes(pattern_.entries(), own.model.graph.constant(0));
-    for (const JacobianEntry& entry : entries[mode]) nodes[pattern_.find(entry.row, entry.column)] = entry.value;
-    mine.entries = Evaluation(own.busy_tape_of(nodes), variables);
+    mine.entries = Evaluation(std::move(found.entries), variables);
     if (pattern_.is_banded()) mine.in_band = mine.entries.outputs_at(places_in_band_);
-    nodes.clear();
-    for (const JacobianEntry& entry : model::jacobian(own.model.graph, model.modes[mode].derivatives, time)) {
-      mine.moving.push_back(entry.row);
-      nodes.push_back(entry.value);
-    }
-    mine.by_time = Evaluation(own.tape_of(nodes), variables);
+    mine.moving = std::move(found.moving);
+    mine.by_time = Evaluation(std::move(found.by_time), variables);
   }
-  values_.resize(std::max(columns.size(), pattern_.entries()));
+  values_.resize(std::max(program.model.states.size(), pattern_.entries()));
 }
 
 void ModelDerivatives::jacobian_values(std::size_t mode, double t, std::span<const double> x,

@@ -5,10 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/finite.hpp>
+#include <continuo/simulation/program/differences_of_model.hpp>
 #include <continuo/simulation/program/model_system.hpp>
-#include <continuo/system/jacobian.hpp>
 
 namespace continuo::model {
 
@@ -114,10 +113,7 @@ void ModelSystem::place_switches() {
 /// values[place(i, j)]; a place behind them is that of no entry.
 template <class Place>
 void ModelSystem::take_differences(double t, const X& x, std::span<double> values, Place place) {
-  std::vector<double> rows(x.size() * x.size());
-  difference_jacobian(
-      x, [&](std::size_t j) { return central_increment(x[j], 1e-3); },
-      [&](const X& moved, X& dxdt) { (*this)(t, moved, dxdt); }, std::span(rows));
+  const std::vector<double> rows = differences_of_model(x, [&](const X& moved, X& dxdt) { (*this)(t, moved, dxdt); });
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (std::size_t j = 0; j < x.size(); ++j) {
       const std::size_t entry = place(i, j);
@@ -176,11 +172,8 @@ void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
     for (const std::size_t i : held_) dfdt[i] = 0;
     if (all_finite(dfdt)) return;
   }
-  const double increment = difference_increment(t, std::sqrt(std::numeric_limits<double>::epsilon()));
   X now(x.size());
-  (*this)(t, x, now);
-  (*this)(t + increment, x, dfdt);
-  for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / increment;
+  difference_by_time(t, now, dfdt, [&](double when, X& dxdt) { (*this)(when, x, dxdt); });
 }
 
 std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::span<double> c) {

@@ -1,40 +1,21 @@
-// Brings states and parameters to the registers of a tape, and the rates back.
+// The right-hand sides of a model and their derivatives in lanes. A lane whose derivatives are not finite gets those of
+// its run alone.
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
+#include <cmath>
 #include <utility>
 
+#include <continuo/numerics/finite.hpp>
+#include <continuo/simulation/program/differences_of_model.hpp>
 #include <continuo/simulation/together/lane_equations.hpp>
-#include <continuo/symbolic/tape/wide_vectors.hpp>
 
 namespace continuo::model {
 
-namespace {
-
-/// In nanoseconds: about as long as four on one number.
-constexpr std::uint64_t cost_of_operation = 4;
-constexpr std::uint64_t between_counts = 20'000;
-
-}  // namespace
-
-LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode)
+LaneEquations::LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode,
+                             std::optional<LaneDerivatives> derivatives)
     : autonomous(program.autonomous),
-      tape_(program.derivatives[mode]),
-      code_(std::move(code)),
-      operations_(cost_of_operation * (tape_->size().single + tape_->size().batched)),
-      states_begin_(tape_->states_begin()),
-      states_end_(tape_->states_end()),
-      registers_(tape_->register_count()) {
-  const auto make = [&](auto& registers) {
-    registers.all.resize(tape_->register_count());
-    registers.rates.resize(tape_->output_count());
-  };
-  if (has_wide_vectors()) {
-    make(wide_lanes_);
-  } else {
-    make(lanes_);
-  }
-}
+      rates_(program.derivatives[mode], std::move(code)),
+      derivatives_(std::move(derivatives)),
+      follows_tables_(!program.linear_inputs.empty()) {}
 
 std::vector<double> LaneEquations::parameters(std::size_t number, std::span<const double> variables) {
   std::vector<double> p(variables.begin(), variables.end());
@@ -44,70 +25,82 @@ std::vector<double> LaneEquations::parameters(std::size_t number, std::span<cons
 
 void LaneEquations::operator()(double t, const std::vector<double>& x, std::vector<double>& dxdt,
                                const std::vector<double>& p) {
-  if (run_ != p[Layout::time]) {
-    run_ = p[Layout::time];
-    std::ranges::copy(p, registers_.begin());
-    tape_->prepare<double>(registers_);
-  }
-  registers_[Layout::time] = t;
-  tape_->evaluate<double>(registers_, x, dxdt);
+  rates_(t, x, dxdt, p);
 }
 
 void LaneEquations::operator()(const Wide& t, const std::vector<Wide>& x, std::vector<Wide>& dxdt,
                                const std::vector<Wide>& p) {
-  if (wide_lanes_.all.empty()) {
-    evaluate(lanes_, t, x, dxdt, p);
-  } else {
-    evaluate(wide_lanes_, t, x, dxdt, p);
+  rates_(t, x, dxdt, p);
+}
+
+void LaneEquations::jacobian(double t, const std::vector<double>& x, std::span<double> rows,
+                             const std::vector<double>& p) {
+  derivatives_->jacobian<double>(t, x, rows, p);
+  if (!all_finite(rows)) replace_not_finite(t, x, rows, p);
+}
+
+void LaneEquations::jacobian(const Wide& t, const std::vector<Wide>& x, std::span<Wide> rows,
+                             const std::vector<Wide>& p) {
+  derivatives_->jacobian<Wide>(t, x, rows, p);
+  for_each_not_finite(rows, t, x, p, [&](std::size_t lane, double t_one) {
+    entries_.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) entries_[i] = rows[i][lane];
+    replace_not_finite(t_one, x_, entries_, p_);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].set(lane, entries_[i]);
+  });
+}
+
+void LaneEquations::replace_not_finite(double t, const std::vector<double>& x, std::span<double> rows,
+                                       const std::vector<double>& p) {
+  const std::vector<double> differences = differences_of_model(
+      x, [&](const std::vector<double>& moved, std::vector<double>& dxdt) { (*this)(t, moved, dxdt, p); });
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!std::isfinite(rows[i])) rows[i] = differences[i];
+}
+
+void LaneEquations::time_derivative(double t, const std::vector<double>& x, std::vector<double>& dfdt,
+                                    const std::vector<double>& p) {
+  if (!follows_tables_) {
+    derivatives_->time_derivative<double>(t, x, dfdt, p);
+    if (all_finite(dfdt)) return;
   }
+  now_.resize(x.size());
+  difference_by_time(t, now_, dfdt, [&](double when, std::vector<double>& dxdt) { (*this)(when, x, dxdt, p); });
 }
 
-void LaneEquations::set_parameters(const std::vector<Wide>& p) {
-  if (wide_lanes_.all.empty()) {
-    set_parameters(lanes_, p);
-  } else {
-    set_parameters(wide_lanes_, p);
+void LaneEquations::time_derivative(const Wide& t, const std::vector<Wide>& x, std::vector<Wide>& dfdt,
+                                    const std::vector<Wide>& p) {
+  if (follows_tables_) {
+    wide_now_.resize(x.size());
+    return difference_by_time(t, wide_now_, dfdt,
+                              [&](const Wide& when, std::vector<Wide>& dxdt) { (*this)(when, x, dxdt, p); });
   }
+  derivatives_->time_derivative<Wide>(t, x, dfdt, p);
+  for_each_not_finite(dfdt, t, x, p, [&](std::size_t lane, double t_one) {
+    entries_.resize(x.size());
+    time_derivative(t_one, x_, entries_, p_);
+    for (std::size_t i = 0; i < x.size(); ++i) dfdt[i].set(lane, entries_[i]);
+  });
 }
 
-template <class Register>
-void LaneEquations::set_parameters(Registers<Register>& registers, const std::vector<Wide>& p) {
-  runs_ = p[Layout::time];
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (!is_state(i)) registers.all[i].numbers = p[i].values();
-  tape_->prepare<Register>(registers.all);
-}
-
-template <class Register>
-void LaneEquations::evaluate(Registers<Register>& registers, const Wide& t, const std::vector<Wide>& x,
-                             std::vector<Wide>& dxdt, const std::vector<Wide>& p) {
-  if (any(runs_ != p[Layout::time])) [[unlikely]]
-    set_parameters(registers, p);
-  std::memcpy(static_cast<void*>(&registers.all[Layout::time]), &t, sizeof t);
-  if (void* const native = code_ ? code_->code() : nullptr) {
-    reinterpret_cast<NativeLaneEvaluation>(native)(registers.all.front().numbers.data(),
-                                                   reinterpret_cast<const double*>(x.data()),
-                                                   reinterpret_cast<double*>(dxdt.data()), nullptr);
-  } else {
-    evaluate_tape(registers, x, dxdt);
+template <class Act>
+void LaneEquations::for_each_not_finite(std::span<const Wide> numbers, const Wide& t, const std::vector<Wide>& x,
+                                        const std::vector<Wide>& p, const Act& act) {
+  Wide sum(0.0);
+  for (const Wide& number : numbers) sum += detail::zero_if_finite(number);
+  const auto finite = sum == Wide(0.0);
+  if (all(finite)) [[likely]]
+    return;
+  const auto take = [](const std::vector<Wide>& from, std::size_t lane, std::vector<double>& to) {
+    to.resize(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i][lane];
+  };
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if (finite[lane]) continue;
+    take(x, lane, x_);
+    take(p, lane, p_);
+    act(lane, t[lane]);
   }
-}
-
-template <class Register>
-void LaneEquations::evaluate_tape(Registers<Register>& registers, const std::vector<Wide>& x, std::vector<Wide>& dxdt) {
-  // Both have the numbers of all lanes one after the other.
-  static_assert(sizeof(Register) == sizeof(Wide) && std::is_trivially_copyable_v<Register> &&
-                std::is_trivially_copyable_v<Wide>);
-  std::memcpy(static_cast<void*>(&registers.all[states_begin_]), x.data(), x.size() * sizeof(Wide));
-  tape_->evaluate<Register>(registers.all, registers.rates);
-  std::memcpy(static_cast<void*>(dxdt.data()), registers.rates.data(), x.size() * sizeof(Wide));
-  if (code_) count_use();
-}
-
-void LaneEquations::count_use() {
-  uncounted_ += operations_;
-  if (uncounted_ < between_counts) return;
-  code_->count(std::exchange(uncounted_, 0));
 }
 
 }  // namespace continuo::model

@@ -6,34 +6,40 @@
 #pragma once
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <continuo/methods/method.hpp>
-#include <continuo/numerics/lanes.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/together/lane_derivatives.hpp>
+#include <continuo/simulation/together/lane_tape.hpp>
 #include <continuo/symbolic/native/c_step.hpp>
-#include <continuo/symbolic/native/native_function.hpp>
-#include <continuo/symbolic/tape/tape_lanes.hpp>
 
 namespace continuo::model {
 
 class LaneEquations {
  public:
-  static constexpr std::size_t lanes = TapeLanes::width;  // at once, and no others
-  using Wide = Lanes<double, lanes>;
+  static constexpr std::size_t lanes = LaneTape::lanes;
+  using Wide = LaneTape::Wide;
 
   /// Those of a mode of a model whose equations do not jump. `code`: their machine code, with the steps of the method
   /// that is used, or null.
-  LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode = 0);
+  /// `derivatives`: for methods that ask for them.
+  LaneEquations(const ModelProgram& program, std::shared_ptr<NativeFunction> code, std::size_t mode = 0,
+                std::optional<LaneDerivatives> derivatives = {});
 
   /// The parameters of a run with these variables. `number` is not that of any other run, and at least 1.
   [[nodiscard]] static std::vector<double> parameters(std::size_t number, std::span<const double> variables);
 
   void operator()(double t, const std::vector<double>& x, std::vector<double>& dxdt, const std::vector<double>& p);
   void operator()(const Wide& t, const std::vector<Wide>& x, std::vector<Wide>& dxdt, const std::vector<Wide>& p);
+  /// df/dx row by row, and df/dt, as ModelSystem has them.
+  void jacobian(double t, const std::vector<double>& x, std::span<double> rows, const std::vector<double>& p);
+  void jacobian(const Wide& t, const std::vector<Wide>& x, std::span<Wide> rows, const std::vector<Wide>& p);
+  void time_derivative(double t, const std::vector<double>& x, std::vector<double>& dfdt, const std::vector<double>& p);
+  void time_derivative(const Wide& t, const std::vector<Wide>& x, std::vector<Wide>& dfdt, const std::vector<Wide>& p);
   /// A whole step of the method M by machine code, as M::step and M::error_square compute it. `square`: of the error,
   /// or null. `keeps_stages`: all are written to `work`, else only those that the next step needs. False where there is
   /// no such code: nothing is done then.
@@ -46,48 +52,28 @@ class LaneEquations {
   bool autonomous;
 
  private:
-  template <class Register>
-  struct Registers {
-    std::vector<Register> all, rates;
-  };
-  template <class Register>
-  void evaluate(Registers<Register>& registers, const Wide& t, const std::vector<Wide>& x, std::vector<Wide>& dxdt,
-                const std::vector<Wide>& p);
-  [[nodiscard]] bool is_state(std::size_t variable) const {
-    return variable >= states_begin_ && variable < states_end_;
-  }
+  // What the derivatives do not give, of one run.
+  void replace_not_finite(double t, const std::vector<double>& x, std::span<double> rows, const std::vector<double>& p);
+  // Calls `act(lane, t)` for each lane in which some of these are not finite, with its state in x_ and p_.
+  template <class Act>
+  void for_each_not_finite(std::span<const Wide> numbers, const Wide& t, const std::vector<Wide>& x,
+                           const std::vector<Wide>& p, const Act& act);
 
-  void set_parameters(const std::vector<Wide>& p);
-  template <class Register>
-  void set_parameters(Registers<Register>& registers, const std::vector<Wide>& p);
-  [[nodiscard]] double* all_registers() {
-    return wide_lanes_.all.empty() ? lanes_.all.front().numbers.data() : wide_lanes_.all.front().numbers.data();
-  }
-  template <class Register>
-  void evaluate_tape(Registers<Register>& registers, const std::vector<Wide>& x, std::vector<Wide>& dxdt);
-  void count_use();
-
-  std::shared_ptr<const Tape> tape_;
-  std::shared_ptr<NativeFunction> code_;
-  std::uint64_t operations_;     // of an evaluation
-  std::uint64_t uncounted_ = 0;  // operations
-  std::size_t states_begin_, states_end_;
-  std::vector<double> registers_;  // of one run
-  Registers<TapeLanes> lanes_;     // one of the two is used
-  Registers<WideTapeLanes> wide_lanes_;
-  double run_ = 0;  // whose parameters are in the registers
-  Wide runs_{};     // and of each lane
+  LaneTape rates_;
+  std::optional<LaneDerivatives> derivatives_;
+  bool follows_tables_;                  // an input does, over time
+  std::vector<double> x_, p_, entries_;  // of one lane
+  std::vector<double> now_;
+  std::vector<Wide> wide_now_;
 };
 
 template <class M>
 bool LaneEquations::take_step(const Wide& t, const std::vector<Wide>& x, const Wide& h, const std::vector<Wide>& p,
                               typename M::template Workspace<std::vector<Wide>>& work, std::vector<Wide>& x_new,
                               const Tolerance<Wide>& tolerance, Wide* square, bool keeps_stages) {
-  void* const native = code_ ? code_->code() : nullptr;
+  const NativeLaneEvaluation native = rates_.code();
   if (native == nullptr) return false;
   constexpr std::size_t stages = M::tableau.stages;
-  if (any(runs_ != p[Layout::time])) [[unlikely]]
-    set_parameters(p);
   const auto numbers = [](auto* wide) { return reinterpret_cast<double*>(const_cast<Wide*>(wide)); };
   std::array<double*, stages> k;
   for (std::size_t j = 0; j < stages; ++j) k[j] = numbers(work.k[j].data());
@@ -103,7 +89,7 @@ bool LaneEquations::take_step(const Wide& t, const std::vector<Wide>& x, const W
                       .atol = numbers(tolerance.atol_each ? tolerance.atol_each : &tolerance.atol),
                       .rtol_each = tolerance.rtol_each ? 1 : 0,
                       .atol_each = tolerance.atol_each ? 1 : 0};
-  reinterpret_cast<NativeLaneEvaluation>(native)(all_registers(), nullptr, nullptr, &step);
+  native(rates_.registers(p), nullptr, nullptr, &step);
   work.start_fresh = true;
   work.end_fresh = M::tableau.first_same_as_last();
   return true;

@@ -1,0 +1,27 @@
+// Asks the compiler of the model for code in lanes.
+#include <continuo/simulation/together/integrate_together.hpp>
+#include <continuo/simulation/together/lane_code.hpp>
+#include <continuo/symbolic/native/native_compiler.hpp>
+
+namespace continuo::model {
+
+std::shared_ptr<NativeFunction> LaneCode::rates(const std::string& method, std::size_t mode) {
+  NativeCompiler* const compiler = program_->model.native.get();
+  if (!compiler) return nullptr;
+  const std::scoped_lock lock(mutex_);
+  std::shared_ptr<NativeFunction>& code = rates_[{method, mode}];
+  if (!code) code = compiler->lane_code(program_->derivatives[mode], step_formula(method));
+  return code;
+}
+
+LaneDerivatives LaneCode::derivatives() {
+  const std::scoped_lock lock(mutex_);
+  if (!tapes_) {
+    tapes_ = std::make_shared<const DerivativeTapes>(derivative_tapes(*program_, false));
+    if (NativeCompiler* const compiler = program_->model.native.get())
+      entries_ = compiler->lane_code(tapes_->modes.front().entries);
+  }
+  return {tapes_, entries_};
+}
+
+}  // namespace continuo::model
