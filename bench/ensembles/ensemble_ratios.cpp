@@ -221,6 +221,7 @@ int main() {
   compare_lorenz();
   bench::compare_bubbles();
   bench::compare_valves();
+  bench::compare_stiff_runs();
   compare_balls();
   compare_fixed_steps();
   compare_threads();

@@ -17,6 +17,8 @@ namespace continuo::bench {
 void compare_bubbles();
 /// The pressure relief valve of Hos and Champneys, whose body strikes its seat: impacts within each run.
 void compare_valves();
+/// Stiff ones: the reaction of Robertson, the equation of Van der Pol.
+void compare_stiff_runs();
 
 /// The largest error of all runs, in units of 1 + |x|.
 template <class X>
