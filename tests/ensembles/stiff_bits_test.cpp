@@ -22,13 +22,15 @@ namespace {
 
 #ifndef __FMA__  // with fused operations the compiler rounds one number and lanes of numbers in different places
 
-template <class X, class P, class F>
+template <class X, class P, class F, class... Events>
 void expect_the_bits_of_solve(const F& f, const std::vector<RunStart<X, P>>& list, const Ensemble<X, P>& ensemble,
-                              Interval<double> interval, const EnsembleOptions<X, P>& options) {
+                              Interval<double> interval, const EnsembleOptions<X, P>& options,
+                              const Events&... events) {
   ASSERT_EQ(ensemble.runs.size(), list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const auto one = [&](double t, const X& x, X& dxdt) { f(t, x, dxdt, list[i].p); };
     Options<X> alone = options.of_one_run();
+    alone.events = {events...};
     const auto solution = solve(one, list[i].x, interval, Rodas5P{}, alone);
     const RunResult<X, P>& run = ensemble.runs[i];
     EXPECT_EQ(run.outcome.ending, solution.outcome.ending) << "run " << i << ": " << solution.outcome.hint;
@@ -81,6 +83,18 @@ TEST(StiffEnsemble, OfVanDerPolHasTheBitsOfSolveWhateverTheLanesTheThreadsAndThe
   compare(std::integral_constant<std::size_t, 1>{}, 1);
   compare(std::integral_constant<std::size_t, 2>{}, 2);
   compare(std::integral_constant<std::size_t, 8>{}, 3);
+}
+
+TEST(StiffEnsemble, WithEventsAtGivenTimesHasTheBitsOfSolve) {
+  std::mt19937_64 generator(15);
+  std::uniform_real_distribution<double> number(0, 1);
+  std::vector<RunStart<Two, One>> list(9);
+  for (auto& start : list) start = {{2 * number(generator), number(generator)}, {std::pow(10, 4 * number(generator))}};
+  const auto kick = every("kick", 1.25, 0.5, [](auto& now) { now.x[0] += 0.25; });
+  const auto mark = at("mark", std::vector{2.1}, [](auto&) {});  // which changes nothing
+  const auto result = ensemble<4>(van_der_pol, list, {0, 12}, Rodas5P{}, pol_options, kick, mark);
+  for (const auto& run : result.runs) EXPECT_EQ(run.events.size(), 11U);
+  expect_the_bits_of_solve(van_der_pol, list, result, {0, 12}, pol_options, kick, mark);
 }
 
 // ---- random systems of every size, and those that fail
