@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <continuo/numerics/state.hpp>
+#include <continuo/system/autonomy.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::detail {
@@ -17,24 +18,15 @@ inline constexpr bool has_parameters = true;
 template <FixedSize P>
 inline constexpr bool has_parameters<P> = std::tuple_size_v<P> > 0;
 
-/// Whether f depends on t, where f says so.
-template <class F>
-struct AutonomyOf {
-  explicit AutonomyOf(const F&) {}
-};
-template <KnowsAutonomous F>
-struct AutonomyOf<F> {
-  explicit AutonomyOf(const F& f) : autonomous(f.autonomous) {}
-  bool autonomous;
-};
-
 /// f and p. The function is not owned.
 template <class F, class P>
 struct SystemWithParameters : AutonomyOf<F> {
   F* f;
   P p;
 
-  SystemWithParameters(F* f_, P p_) : AutonomyOf<F>(*f_), f(f_), p(std::move(p_)) {}
+  SystemWithParameters(F* f_, P p_) : f(f_), p(std::move(p_)) {
+    if constexpr (KnowsAutonomous<F>) this->autonomous = f->autonomous;
+  }
 
   template <State X>
   [[gnu::always_inline]] void operator()(const Scalar<X>& t, const X& x, X& dxdt) {

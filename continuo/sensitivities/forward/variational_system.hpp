@@ -11,18 +11,9 @@
 
 #include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/sensitivities/derivatives/parameter_derivatives.hpp>
+#include <continuo/system/autonomy.hpp>
 
 namespace continuo {
-
-namespace detail {
-struct SaysNothingOfTime {};
-struct SaysIfAutonomous {
-  bool autonomous = false;
-};
-/// `autonomous` where f has it: a system that says nothing is not one that depends on time.
-template <class F>
-using AutonomyOf = std::conditional_t<KnowsAutonomous<F>, SaysIfAutonomous, SaysNothingOfTime>;
-}  // namespace detail
 
 /// x and `columns` columns of S; of these the first m are dx/dp, if there are more, the others are dx/dx0. Implicit
 /// methods get the Jacobian: its diagonal blocks are df/dx, and the blocks dS'/dx come from central differences.
