@@ -1,6 +1,7 @@
 // Joints between two bodies, or between a body and the world: what they leave free, limits, springs and motors.
 //
-//   world.add(JointDefinition<double, 2>{.kind = JointKind::hinge, .b = door, .anchor = {{0, 1}}});  // to the world
+//   world.add_joint(JointDefinition<double, 2>{.kind = JointKind::hinge, .b = door, .anchor = {{0, 1}}});  // to the
+//   world
 #pragma once
 #include <cstdint>
 #include <limits>

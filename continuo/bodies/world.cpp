@@ -202,7 +202,7 @@ bool World<Real, Dim>::remove(BodyHandle body) {
   }
   if (!traits_.empty()) traits_[i] = traits_[last], traits_.pop_back();
   for (const JointHandle joint : joints())
-    if (find(joint)->a == body || find(joint)->b == body) remove(joint);
+    if (find(joint)->a == body || find(joint)->b == body) remove_joint(joint);
   return true;
 }
 

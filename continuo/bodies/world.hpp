@@ -161,11 +161,11 @@ class World {
 
   /// Adds a joint between bodies that are where it is to hold them. Fails for a body that does not exist, for a joint
   /// of a body with itself, and for places, axes, limits, springs or motors that make no sense.
-  Result<JointHandle> add(const JointDefinition<Real, Dim>& definition);
+  Result<JointHandle> add_joint(const JointDefinition<Real, Dim>& definition);
   /// False where the world has no such joint. Joints go with their bodies.
-  bool remove(JointHandle handle);
+  bool remove_joint(JointHandle handle);
   /// Whether the joint exists.
-  [[nodiscard]] bool contains(JointHandle handle) const {
+  [[nodiscard]] bool has_joint(JointHandle handle) const {
     return handle.slot < joints_.size() && joints_[handle.slot].generation == handle.generation &&
            joints_[handle.slot].is_used;
   }
@@ -173,10 +173,10 @@ class World {
   /// joint.
   /// @{
   [[nodiscard]] Joint<Real, Dim>* find(JointHandle handle) {
-    return contains(handle) ? &joints_[handle.slot].joint : nullptr;
+    return has_joint(handle) ? &joints_[handle.slot].joint : nullptr;
   }
   [[nodiscard]] const Joint<Real, Dim>* find(JointHandle handle) const {
-    return contains(handle) ? &joints_[handle.slot].joint : nullptr;
+    return has_joint(handle) ? &joints_[handle.slot].joint : nullptr;
   }
   /// @}
   /// The handles of all joints, in the order of their slots. O(joints).

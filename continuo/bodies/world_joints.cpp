@@ -66,7 +66,7 @@ Matrix<Real, 3> axes_of(const JointDefinition<Real, 3>& of) {
 }  // namespace
 
 template <class Real, int Dim>
-Result<JointHandle> World<Real, Dim>::add(const JointDefinition<Real, Dim>& of) {
+Result<JointHandle> World<Real, Dim>::add_joint(const JointDefinition<Real, Dim>& of) {
   if (Status fault = check_joint(of); !fault) return fault;
   const bool is_to_world = of.a == BodyHandle{};
   if (!contains(of.b) || (!is_to_world && !contains(of.a)))
@@ -109,8 +109,8 @@ Result<JointHandle> World<Real, Dim>::add(const JointDefinition<Real, Dim>& of) 
 }
 
 template <class Real, int Dim>
-bool World<Real, Dim>::remove(JointHandle handle) {
-  if (!contains(handle)) return false;
+bool World<Real, Dim>::remove_joint(JointHandle handle) {
+  if (!has_joint(handle)) return false;
   joints_[handle.slot].is_used = false;
   ++joints_[handle.slot].generation;
   --joint_count_;
@@ -126,14 +126,14 @@ std::vector<JointHandle> World<Real, Dim>::joints() const {
   return all;
 }
 
-template Result<JointHandle> World<float, 2>::add(const JointDefinition<float, 2>&);
-template Result<JointHandle> World<float, 3>::add(const JointDefinition<float, 3>&);
-template Result<JointHandle> World<double, 2>::add(const JointDefinition<double, 2>&);
-template Result<JointHandle> World<double, 3>::add(const JointDefinition<double, 3>&);
-template bool World<float, 2>::remove(JointHandle);
-template bool World<float, 3>::remove(JointHandle);
-template bool World<double, 2>::remove(JointHandle);
-template bool World<double, 3>::remove(JointHandle);
+template Result<JointHandle> World<float, 2>::add_joint(const JointDefinition<float, 2>&);
+template Result<JointHandle> World<float, 3>::add_joint(const JointDefinition<float, 3>&);
+template Result<JointHandle> World<double, 2>::add_joint(const JointDefinition<double, 2>&);
+template Result<JointHandle> World<double, 3>::add_joint(const JointDefinition<double, 3>&);
+template bool World<float, 2>::remove_joint(JointHandle);
+template bool World<float, 3>::remove_joint(JointHandle);
+template bool World<double, 2>::remove_joint(JointHandle);
+template bool World<double, 3>::remove_joint(JointHandle);
 template std::vector<JointHandle> World<float, 2>::joints() const;
 template std::vector<JointHandle> World<float, 3>::joints() const;
 template std::vector<JointHandle> World<double, 2>::joints() const;

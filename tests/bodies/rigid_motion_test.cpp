@@ -14,7 +14,10 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo::test {
+namespace continuo::rigid_motion_test {
+
+using namespace test;  // rigid_worlds.hpp
+
 namespace {
 
 template <int Dim>
@@ -229,7 +232,7 @@ TEST(RigidMotion, RandomHeapsStayInTheirContainer) {
 
 TEST(RigidMotion, SnapshotsContinueToTheBit) {
   World<double, 3> world = falling<double, 3>(5, 8);
-  const auto joined = world.add(JointDefinition<double, 3>{
+  const auto joined = world.add_joint(JointDefinition<double, 3>{
       .kind = JointKind::ball, .a = world.handle(0), .b = world.handle(1), .anchor = {{0, 0, 2}}});
   ASSERT_TRUE(joined);
   BodyTraits<double> traits;
@@ -345,4 +348,4 @@ TEST(RigidMotion, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace continuo::test
+}  // namespace continuo::rigid_motion_test

@@ -9,7 +9,7 @@
 #include <continuo/bodies/queries.hpp>
 #include <continuo/shapes/ray_entry.hpp>
 
-namespace continuo::test {
+namespace continuo::solid_queries_test {
 namespace {
 
 template <int Dim>
@@ -137,4 +137,4 @@ TEST(SolidQueries, RegionsFindWhatTheyTouch) {
 }
 
 }  // namespace
-}  // namespace continuo::test
+}  // namespace continuo::solid_queries_test

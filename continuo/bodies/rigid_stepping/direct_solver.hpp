@@ -122,12 +122,16 @@ class DirectSolver {
     for (std::size_t i = 0; i < free_.size(); ++i)
       for (std::size_t k = 0; k < after[i].size(); ++k) free_[i][k] = 2 * free_[i][k] - after[i][k];
   }
-  /// Finds the impulses, and the velocities that they give.
-  void solve(RowPass pass) {
+  /// Finds the impulses, and the velocities that they give. False where it does not; then nothing has changed.
+  [[nodiscard]] bool solve(RowPass pass) {
     pass_ = pass;
-    before_ = impulses();
-    minimize();
+    const std::vector<double> before = impulses();
+    if (!newton()) {
+      restore(before);
+      return false;
+    }
     v_ = velocities_of_impulses();
+    return true;
   }
 
   template <class Real>
@@ -146,7 +150,7 @@ class DirectSolver {
 
  private:
   static constexpr double stiffness = 1e6;  // of rigid rows, per mass; rounding errors take 1e-16 times that
-  static constexpr int most_updates_of_limits = 2;
+  static constexpr int most_updates_of_limits = 2, most_iterations = 25;
   enum class RowState : std::uint8_t { open, acts, slides };
   struct Row {
     Velocity on_a{}, on_b{};  // the row of J
@@ -216,10 +220,8 @@ class DirectSolver {
     return sum;
   }
 
-  /// Where the impulses of the last substep nearly fit, Newton's method finds the new ones at once. Otherwise splitting
-  /// finds out which contacts act.
-  void minimize() {
-    set_stiffness();
+  /// When the gradient is small enough, as a change of velocity.
+  [[nodiscard]] double accuracy() const {
     double greatest = 0, steepest = 0;
     for (const Velocity& v : free_) greatest = std::max(greatest, product(v, v));
     for (const Row& row : rows_) {
@@ -229,14 +231,7 @@ class DirectSolver {
       if (row.mass > 0) steepest = std::max(steepest, row.slope / row.mass);
     }
     // Rounding errors of J v, times the stiffness, are in the gradient.
-    accuracy_ = std::max(1e-8, 4e-15 * steepest) * std::sqrt(greatest) + 1e-14;
-    if (newton(8)) return;
-    restore(before_);
-    split(20);
-    const std::vector<double> of_splitting = impulses();
-    if (newton(8)) return;
-    restore(of_splitting);
-    split(20);
+    return std::max(1e-8, 4e-15 * steepest) * std::sqrt(greatest) + 1e-14;
   }
   /// Joints that hold a large mass by small ones have to be as stiff as that needs.
   void set_stiffness() {
@@ -254,56 +249,10 @@ class DirectSolver {
   void restore(const std::vector<double>& impulses) {
     for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].impulse = impulses[r];
   }
-  /// The alternating direction method of multipliers (S. Boyd et al., Found. Trends Mach. Learn. 3, 2011): velocities
-  /// with all rows acting, and impulses within their limits, in turns. The matrix is always the same.
-  void split(int most) {
-    for (Row& row : rows_) {
-      row.slope = row.softness > 0 ? 1 / row.softness : (row.is_limited ? 10 : stiffness) * row.mass;
-      row.start = 0;
-      row.state = RowState::acts;
-      row.wanted = row.impulse;
-    }
-    assemble();
-    is_factorized_ = false;
-    if (!factors_.factorize()) return;
-    for (int k = 0; k < most; ++k) {
-      // M v* + J^T (2 impulse - wanted - slope (given + bias)).
-      step_.assign(free_.size(), {});
-      for (std::size_t b = 0; b < blocks_.size(); ++b)
-        for (const Row& row : std::span(rows_).subspan(blocks_[b].first, blocks_[b].rows)) {
-          const double impulse =
-              (row.softness > 0 ? 0 : 2 * row.impulse - row.wanted) - row.slope * (row.given + bias(row));
-          if (pairs_[b].a != fixed) add_multiple(step_[pairs_[b].a], impulse, row.on_a);
-          if (pairs_[b].b != fixed) add_multiple(step_[pairs_[b].b], impulse, row.on_b);
-        }
-      for (std::size_t i = 0; i < step_.size(); ++i)
-        for (std::size_t c = 0; c < std::size_t(size); ++c)
-          for (std::size_t r = 0; r < std::size_t(size); ++r) step_[i][r] += mass_[i][c * size + r] * free_[i][c];
-      factors_.solve(step_);
-      v_ = step_;
-      for (std::size_t b = 0; b < blocks_.size(); ++b) project(blocks_[b], pairs_[b]);
-    }
-  }
   [[nodiscard]] double bias(const Row& row) const { return pass_ == RowPass::push ? row.bias : row.bias_at_end; }
-  void project(const RowBlock& block, const Pair& pair) {
-    Row* const rows = &rows_[block.first];
-    for (std::size_t r = 0; r < block.rows; ++r) {
-      rows[r].wanted = (rows[r].softness > 0 ? 0 : rows[r].impulse) - rows[r].slope * residual(rows[r], pair, v_);
-      if (block.points == 0 || r < block.points)
-        rows[r].impulse = std::clamp(rows[r].wanted, rows[r].least, rows[r].most);
-    }
-    for (std::size_t point = 0; point < block.points; ++point) {
-      Row* const across = &rows[block.points + point * (Dim - 1)];
-      std::array<double, Dim - 1> wanted;
-      for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = across[k].wanted;
-      limit_friction(wanted, double(block.friction) * rows[point].impulse);
-      for (std::size_t k = 0; k < wanted.size(); ++k) across[k].impulse = wanted[k];
-    }
-  }
-
   /// Semismooth Newton: each iteration solves for the velocities as if all rows stayed in their states, and then looks
   /// which do, until the limits of friction are those that the impulses mean.
-  [[nodiscard]] bool newton(int most) {
+  [[nodiscard]] bool newton() {
     set_stiffness();
     for (const RowBlock& block : blocks_)
       for (std::size_t r = block.first; r < std::size_t(block.first + block.rows); ++r) {
@@ -311,25 +260,28 @@ class DirectSolver {
         // The impulses across the normals begin at 0, so that those of the points of a contact do not work against each
         // other for ever.
         const bool is_across = block.points > 0 && r >= std::size_t(block.first + block.points);
-        row.start = row.softness > 0 || is_across ? 0 : row.impulse;
+        // Those along them fade, so that a body that is squeezed does not store up more and more.
+        const double kept = block.points > 0 ? 0.99 : 1;
+        row.start = row.softness > 0 || is_across ? 0 : kept * row.impulse;
         row.wanted = row.impulse;
       }
     update_limits();
     v_ = velocities_of_impulses();
     bool have_states_changed = choose_states();
     bool is_found = false;
+    const double small = accuracy();
     for (int k = 0, updates = 0;; ++k) {
       gradient(step_);
-      if (size_of(step_) <= accuracy_) {
+      if (size_of(step_) <= small) {
         is_found = true;
         found_ = impulses();
         if (updates == most_updates_of_limits || !update_limits()) return true;
         ++updates;
         have_states_changed |= choose_states();
         gradient(step_);
-        if (size_of(step_) <= accuracy_) return true;
+        if (size_of(step_) <= small) return true;
       }
-      if (k == most) break;
+      if (k == most_iterations) break;
       if (k == 0) have_states_changed = guess_states();
       set_impulses();
       gradient(step_);
@@ -530,9 +482,9 @@ class DirectSolver {
   std::vector<Row> rows_;
   std::vector<Velocity> free_, v_, step_;
   std::vector<Block<size>> mass_;
-  std::vector<double> inverse_mass_, before_, found_;
+  std::vector<double> inverse_mass_, found_;
   std::vector<Matrix<double, size_of_spin>> inverse_inertia_;
-  double accuracy_ = 0, greatest_mass_ = 0, greatest_inertia_ = 0;
+  double greatest_mass_ = 0, greatest_inertia_ = 0;
   RowPass pass_ = RowPass::push;
   bool is_factorized_ = false;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,7 @@ class IslandSolver {
     const std::size_t most_updates = rows / 2 + 100;
     is_direct_ = direct_.analyse(members_.size(), pairs_, most_updates);
     is_loaded_ = false;
+    sweeps_ = 1;
   }
   [[nodiscard]] bool is_direct() const { return is_direct_; }
 
@@ -50,8 +52,11 @@ class IslandSolver {
         direct_.template load_biases<Real>(blocks_, all);
       }
       is_loaded_ = true;
-      return solve_directly(RowPass::push, all, bodies);
+      if (solve_directly(RowPass::push, all, bodies)) return;
+      is_direct_ = false;  // sweeps go on for the rest of this step
+      sweeps_ = sweeps_instead;
     }
+    if (sweeps_ > 1) soften_joints(all);
     for (const std::uint32_t k : blocks_)
       for (const auto& row : all.of(all.blocks[k]))
         if (row.impulse != Real(0)) row.apply(row.impulse, bodies[all.blocks[k].a], bodies[all.blocks[k].b]);
@@ -67,36 +72,54 @@ class IslandSolver {
     } else {
       direct_.template load_biases<Real>(blocks_, all);
     }
-    solve_directly(RowPass::relax, all, bodies);
+    if (solve_directly(RowPass::relax, all, bodies)) return;
+    is_direct_ = false;
+    sweeps_ = sweeps_instead;
+    sweep_all(RowPass::relax, all, bodies);
   }
   /// Adds what impacts give: the rows begin without impulses.
   void rebound(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
       direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
       direct_.template load_rows<Real>(blocks_, all, bodies);
-      return solve_directly(RowPass::relax, all, bodies);
+      if (solve_directly(RowPass::relax, all, bodies)) return;
     }
-    constexpr int sweeps = 8;
-    for (int k = 0; k < sweeps; ++k) sweep_all(RowPass::relax, all, bodies);
+    sweeps_ = sweeps_instead;
+    sweep_all(RowPass::relax, all, bodies);
   }
 
  private:
-  void solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
-    direct_.solve(pass);
+  [[nodiscard]] bool solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
+    if (!direct_.solve(pass)) return false;
     direct_.template store_bodies<Real>(members_, bodies);
     direct_.template store_impulses<Real>(blocks_, all);
+    return true;
+  }
+  /// Sweeps do not get along with joints that undo all of an error at once.
+  void soften_joints(Constraints<Real, Dim>& all) const {
+    for (const std::uint32_t k : blocks_)
+      for (auto& row : all.of(all.blocks[k])) {
+        const bool is_free = row.least == -row.most && !(row.most < std::numeric_limits<Real>::infinity());
+        if (all.blocks[k].points > 0 || !is_free || row.softness > Real(0) || !(row.mass > Real(0))) continue;
+        row.bias *= Real(0.1);
+        row.softness = Real(0.1) / row.mass;
+      }
   }
   void sweep_all(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
-    for (const std::uint32_t k : blocks_) {
-      const RowBlock& block = all.blocks[k];
-      sweep<Real, Dim>(all.of(block), block, pass, bodies[block.a], bodies[block.b]);
-    }
+    for (int sweep_number = 0; sweep_number < sweeps_; ++sweep_number)
+      for (const std::uint32_t k : blocks_) {
+        const RowBlock& block = all.blocks[k];
+        sweep<Real, Dim>(all.of(block), block, pass, bodies[block.a], bodies[block.b]);
+      }
   }
+
+  static constexpr int sweeps_instead = 20;  // where an island was to be solved directly, but could not
 
   DirectSolver<Dim> direct_;
   std::span<const std::uint32_t> members_, blocks_;
   std::vector<typename DirectSolver<Dim>::Pair> pairs_;
   bool is_direct_ = false, has_joints_ = false, is_loaded_ = false;
+  int sweeps_ = 1;
 };
 
 }  // namespace continuo

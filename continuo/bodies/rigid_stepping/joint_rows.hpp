@@ -16,9 +16,10 @@ namespace continuo {
 /// How the joints of a substep are held.
 template <class Real>
 struct JointHardness {
-  Real h{};         // the substep
-  Real rate{};      // of undoing errors, per time
-  Real softness{};  // velocity per impulse, times the mass; 0 is rigid
+  Real h{};             // the substep
+  Real rate{};          // of undoing errors, per time
+  Real softness{};      // velocity per impulse, times the mass; 0 is rigid
+  Real fastest_push{};  // of undoing errors of a joint at rest
 };
 
 /// What a row of a joint does, which tells the impulses of the last substep apart.
@@ -106,7 +107,15 @@ class JointRows {
 
   /// Undoes an error.
   void correct(ConstraintRow<Real, Dim>& row, const Real& error) const {
-    row.bias = hardness_.rate * error;
+    // What a substep at these velocities gives is undone at once. Ends that are farther apart, since they never were
+    // together or something heavy has torn at them, are drawn together slowly.
+    const Real speed = row.direction == Vector<Real, Dim>{}
+                           ? length(a_.spin) + length(b_.spin)
+                           : length(a_.v) + length(b_.v) + length(row.lever_a) * length(a_.spin) +
+                                 length(row.lever_b) * length(b_.spin);
+    const bool is_of_substep = std::abs(error) <= speed * hardness_.h / 2;
+    const Real fastest = is_of_substep ? speed : hardness_.fastest_push;
+    row.bias = std::clamp(Real(hardness_.rate * error), -fastest, fastest);
     row.softness = row.mass > Real(0) ? hardness_.softness / row.mass : Real(0);
   }
   /// The coordinate, whose rows `make(kind)` adds, obeys the limits, the spring and the motor.
@@ -127,7 +136,7 @@ class JointRows {
   void limit(const JointLimits<Real>& limits, const Real& coordinate, Make&& make) {
     const auto one_sided = [&](ConstraintRow<Real, Dim>& row, const Real& room) {
       row.least = Real(0);
-      row.bias = room > Real(0) ? room / hardness_.h : hardness_.rate * room;
+      row.bias = room > Real(0) ? room / hardness_.h : std::max(hardness_.rate * room, -hardness_.fastest_push);
       row.bias_at_end = room > Real(0) ? room / hardness_.h : Real(0);
     };
     if (limits.lower > -std::numeric_limits<Real>::infinity())

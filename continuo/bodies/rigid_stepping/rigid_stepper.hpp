@@ -190,8 +190,9 @@ class RigidStepper {
     for (RigidBody<Real, Dim>& body : bodies_) body.stiffening = {};
     const Real h = substep();
     const Softness<Real> soft = softness(1 / (4 * h), Real(2), h);
-    const JointHardness<Real> direct{.h = h, .rate = 1 / h, .softness = Real(0)};
-    const JointHardness<Real> swept{.h = h, .rate = soft.rate, .softness = soft.of_impulse / soft.of_mass};
+    const JointHardness<Real> direct{.h = h, .rate = 1 / h, .softness = Real(0), .fastest_push = options_.fastest_push};
+    const JointHardness<Real> swept{
+        .h = h, .rate = soft.rate, .softness = soft.of_impulse / soft.of_mass, .fastest_push = options_.fastest_push};
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       const Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
       const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
@@ -272,11 +273,13 @@ class RigidStepper {
       if (is_alone_[i]) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
       body.axes = rotation(body.orientation);
     }
-    keep();
+    keep_contacts();
+    keep_joints();
     if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
     aim_contacts();
     for_each_island([this](std::size_t k) { solvers_[k].relax(rows_, bodies_); });
     note_greatest_impulses();
+    keep_joints();  // without what corrects positions: where that contradicts itself it would add up
   }
   [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size(); }
   void accelerate(const Real& now, const Real& h) {
@@ -324,9 +327,12 @@ class RigidStepper {
     }
   }
   /// Keeps the impulses of a substep.
-  void keep() {
+  /// @{
+  void keep_contacts() {
     for (std::size_t k = 0; k < active_.size(); ++k)
       keep_impulses<Real, Dim>(contacts_.all()[active_[k]].contact, rows_.of(rows_.blocks[k]));
+  }
+  void keep_joints() {
     for (std::size_t k = 0, r = 0; k < acting_joints_.size(); ++k) {
       KeptJoint& joint = joints_[acting_joints_[k]];
       const RowBlock& block = rows_.blocks[active_.size() + k];
@@ -339,6 +345,7 @@ class RigidStepper {
     }
   }
 
+  /// @}
   void note_greatest_impulses() {
     for (std::size_t k = 0; k < active_.size(); ++k) {
       auto& contact = contacts_.all()[active_[k]].contact;
