@@ -58,10 +58,11 @@ template <class Real>
           combined(combine_rule.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
 }
 
-/// The directions in which a body is held, whatever pushes it: bits that are joined by |. In the plane, z is of no
+/// The directions in which a body is held, whatever pushes it: bits, joined by `both`. In the plane, z is of no
 /// meaning but for turns, which are about z.
 enum class Locked : std::uint8_t { none = 0, x = 1, y = 2, z = 4, turn_x = 8, turn_y = 16, turn_z = 32 };
-[[nodiscard]] constexpr Locked operator|(Locked a, Locked b) {
+/// The directions of a and of b.
+[[nodiscard]] constexpr Locked both(Locked a, Locked b) {
   return static_cast<Locked>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 /// Whether all of b are among a.

@@ -280,7 +280,7 @@ TEST(RigidMotion, LocksDampingGravityAndDrivenBodies) {
     EXPECT_TRUE(body) << describe(body.status());
     return *body;
   };
-  const auto locked = add(0, {.locked = Locked::y | Locked::turn_z});
+  const auto locked = add(0, {.locked = both(Locked::y, Locked::turn_z)});
   const auto floats = add(10, {.gravity_scale = 0});
   const auto damped = add(20, {.gravity_scale = 0, .damping = 1, .spin_damping = 2});
   const auto driven = add(30, {.is_driven = true}, true);

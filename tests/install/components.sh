@@ -41,7 +41,7 @@ for program in nonstiff stiff events precompiled; do "$scratch/solve/$program"; 
 must_say "$("$cmake" --build "$scratch/solve" --target pattern 2>&1 || true)" \
   "needs the sparse solver KLU: install libsuitesparse-dev"
 must_say "$(configure bodies bodies || true)" \
-  "the component bodies needs packages that are not installed: libtbb-dev libxsimd-dev libsuitesparse-dev"
+  "the component bodies needs packages that are not installed: libqhull-dev libtbb-dev libxsimd-dev libsuitesparse-dev"
 must_say "$(configure language 'solve;language' || true)" \
   "the component language needs packages that are not installed: libfmt-dev libudunits2-dev nlohmann-json3-dev"
 must_say "$(configure unknown solver || true)" "there is no component solver, but status numerics system methods solve"

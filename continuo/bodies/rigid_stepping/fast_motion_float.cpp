@@ -1,5 +1,5 @@
 // Instantiates the fast motion for single precision.
-#include <continuo/bodies/time_stepping/fast_motion_members.hpp>
+#include <continuo/bodies/rigid_stepping/fast_motion_members.hpp>
 
 namespace continuo {
 
