@@ -7,6 +7,7 @@
 
 #include <continuo/shapes/hull.hpp>
 #include <continuo/shapes/solid.hpp>
+#include <continuo/shapes/turned_inertia.hpp>
 
 namespace continuo {
 namespace {
@@ -88,15 +89,6 @@ template <class Real>
 Matrix<Real, 3> inertia_of_point(const Vector<Real, 3>& x) {
   return identity_matrix<Real, 3>() * squared(x) + outer(x, x) * Real(-1);
 }
-template <class Real>
-Matrix<Real, 1> turned_inertia(const Matrix<Real, 2>&, const Matrix<Real, 1>& inertia) {
-  return inertia;
-}
-template <class Real>
-Matrix<Real, 3> turned_inertia(const Matrix<Real, 3>& axes, const Matrix<Real, 3>& inertia) {
-  return axes * inertia * transposed(axes);
-}
-
 /// Moves the origin to the common centre of mass, and sums up the inertia.
 template <class Real, int Dim>
 void join(Solid<Real, Dim>& of) {

@@ -5,17 +5,9 @@
 
 #include <continuo/shapes/convex.hpp>
 #include <continuo/shapes/matrix.hpp>
+#include <continuo/shapes/turned_inertia.hpp>
 
 namespace continuo {
-
-template <class Real>
-[[nodiscard]] Matrix<Real, 1> turned_inertia(const Matrix<Real, 2>&, const Matrix<Real, 1>& inertia) {
-  return inertia;
-}
-template <class Real>
-[[nodiscard]] Matrix<Real, 3> turned_inertia(const Matrix<Real, 3>& axes, const Matrix<Real, 3>& inertia) {
-  return axes * inertia * transposed(axes);
-}
 
 template <class Real, int Dim>
 struct RigidBody {

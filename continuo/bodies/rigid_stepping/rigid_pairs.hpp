@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -51,9 +52,10 @@ class RigidPairs {
 
   /// Takes the parts of all bodies.
   void begin(const World<Real, Dim>& world) {
-    parts_.clear(), balls_.clear(), rooms_.clear(), pairs_.clear();
+    parts_.clear(), balls_.clear(), rooms_.clear(), pairs_.clear(), solids_.clear();
     balls_.reserve(world.size());
     for (std::uint32_t i = 0; i < world.size(); ++i) {
+      solids_.push_back(world.shared_solid(i));
       if (const Solid<Real, Dim>* const solid = world.solid(i)) {
         for (const SolidPart<Real, Dim>& part : solid->parts)
           parts_.push_back({i, &part.convex, part.in_solid, inner_radius(part.convex)});
@@ -65,6 +67,15 @@ class RigidPairs {
       parts_.push_back({i, &ball, {}, ball.rounding});
     }
     is_new_ = true;
+  }
+  /// Whether the bodies of the world still have these parts: the caller may have exchanged some.
+  [[nodiscard]] bool is_of(const World<Real, Dim>& world) const {
+    if (solids_.size() != world.size()) return false;
+    for (std::size_t i = 0, ball = 0; i < solids_.size(); ++i) {
+      if (solids_[i].get() != world.solid(i)) return false;
+      if (!solids_[i] && balls_[ball++].rounding != world.radius[i]) return false;
+    }
+    return true;
   }
   /// All parts, by the numbers of their bodies.
   [[nodiscard]] std::span<const RigidPart<Real, Dim>> parts() const { return parts_; }
@@ -153,6 +164,7 @@ class RigidPairs {
 
  private:
   std::vector<RigidPart<Real, Dim>> parts_;
+  std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;  // of each body; the parts refer to them
   std::vector<Convex<Real, Dim>> balls_;
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<std::uint32_t> moved_;

@@ -20,6 +20,7 @@
 #include <continuo/bodies/rigid_stepping/rigid_sleep.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/time_stepping/fast_options_check.hpp>
+#include <continuo/bodies/time_stepping/step_time.hpp>
 #include <continuo/bodies/time_stepping/touch_log.hpp>
 
 namespace continuo {
@@ -117,7 +118,7 @@ class RigidStepper {
   /// sleeps is fixed for this step.
   void load() {
     const std::size_t n = world_.size(), walls = world_.walls().size();
-    if (is_stale_ || bodies_.size() != n + walls + 1) {
+    if (is_stale_ || bodies_.size() != n + walls + 1 || !pairs_.is_of(world_)) {
       bodies_.assign(n + walls + 1, {});
       pairs_.begin(world_);
       is_stale_ = false;
@@ -412,10 +413,7 @@ class RigidStepper {
       world_.velocity[i] = bodies_[i].v, world_.spin[i] = bodies_[i].spin;
     }
     store_joints();
-    const Real steps = std::round(world_.time / options_.step);
-    const bool is_multiple = std::abs(world_.time - steps * options_.step) <=
-                             4 * std::numeric_limits<Real>::epsilon() * std::abs(world_.time);
-    world_.time = is_multiple ? (steps + 1) * options_.step : world_.time + options_.step;
+    world_.time = time_after_step(world_.time, options_.step);
     note_contacts();
     if (options_.sleep_after > Real(0)) settle();
     ++statistics.steps;

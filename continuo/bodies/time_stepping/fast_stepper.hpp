@@ -16,6 +16,7 @@
 #include <continuo/bodies/time_stepping/force_integration.hpp>
 #include <continuo/bodies/time_stepping/impacts.hpp>
 #include <continuo/bodies/time_stepping/sleep.hpp>
+#include <continuo/bodies/time_stepping/step_time.hpp>
 #include <continuo/bodies/time_stepping/torque_integration.hpp>
 #include <continuo/bodies/time_stepping/touch_log.hpp>
 
@@ -137,19 +138,11 @@ class FastMotion<Real, Dim>::Stepper {
       return {.ending = Ending::not_finite,
               .message = "a body's motion is no longer finite: a force or a mass is too large for the step"};
     store_bodies(team_, bodies_, list_.order(), torques_, options_.step, world_);
-    world_.time = time_after_step();
+    world_.time = time_after_step(world_.time, options_.step);
     note_contacts();
     put_to_sleep();
     count();
     return {};
-  }
-
-  /// After steps of equal length from 0 the time is their number times the step, without a sum of rounding errors.
-  [[nodiscard]] Real time_after_step() const {
-    using std::abs, std::round;
-    const Real steps = round(world_.time / options_.step), distance = world_.time - steps * options_.step;
-    const bool is_multiple = abs(distance) <= 4 * std::numeric_limits<Real>::epsilon() * abs(world_.time);
-    return is_multiple ? (steps + 1) * options_.step : world_.time + options_.step;
   }
 
   /// Bodies that the caller has changed wake.
@@ -160,7 +153,7 @@ class FastMotion<Real, Dim>::Stepper {
   /// A step while all bodies sleep.
   [[nodiscard]] Status rest() {
     log.clear();
-    world_.time = time_after_step();
+    world_.time = time_after_step(world_.time, options_.step);
     note_contacts();
     count();
     return {};
