@@ -18,5 +18,16 @@ TEST(Threads, ShareAMixedHeap) {
   expect_the_same_for_any_number_of_threads(mixed(heap<float>(1000, 8, 1)), options, 45);
 }
 
+// Boxes and balls in one heap, whose contacts are found and solved by other code.
+TEST(Threads, ShareAHeapOfBoxes) {
+  World<float, 3> world = heap<float>(100, 4, 1);
+  for (int i = 0; i < 60; ++i) {
+    const auto x = static_cast<float>(i % 4), y = static_cast<float>(i / 4 % 4), z = static_cast<float>(i / 16);
+    ASSERT_TRUE(
+        world.add({.shape = Box<float, 3>{{{0.8f, 0.8f, 0.8f}}}, .position = {{x + 0.8f, y + 0.8f, 10 + 1.2f * z}}}));
+  }
+  expect_the_same_for_any_number_of_threads(world, {}, 45);
+}
+
 }  // namespace
 }  // namespace continuo

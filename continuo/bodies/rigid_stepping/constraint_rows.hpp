@@ -31,11 +31,16 @@ struct ConstraintRow {
   [[nodiscard]] Real velocity(const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) const {
     return dot(direction, b.v - a.v) + dot(lever_b, b.spin) - dot(lever_a, a.spin);
   }
+  /// A fixed body is not written to: islands that are solved at once may share it.
   void apply(const Real& change, RigidBody<Real, Dim>& a, RigidBody<Real, Dim>& b) const {
-    a.v -= direction * (change * a.inverse_mass);
-    a.spin -= a.inverse_inertia_now * lever_a * change;
-    b.v += direction * (change * b.inverse_mass);
-    b.spin += b.inverse_inertia_now * lever_b * change;
+    if (!a.is_fixed()) {
+      a.v -= direction * (change * a.inverse_mass);
+      a.spin -= a.inverse_inertia_now * lever_a * change;
+    }
+    if (!b.is_fixed()) {
+      b.v += direction * (change * b.inverse_mass);
+      b.spin += b.inverse_inertia_now * lever_b * change;
+    }
   }
 };
 
