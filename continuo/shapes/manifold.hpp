@@ -7,6 +7,7 @@
 // common part of both features, seen along the normal, each with the distance there. Points have the numbers of the
 // corners and sides that made them, by which impulses find them again in the next step.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -63,13 +64,40 @@ template <class Real, int Dim>
   return {perpendicular(along), Real(0), (a.corners.back() + a.corners.front()) * Real(0.5)};
 }
 
-/// The common points of the features of a and b that face each other along the normal.
+/// Finds the common points of the features of a and b that face each other along the normal.
 template <class Real, int Dim>
-[[nodiscard]] CommonPoints<Real, Dim> common_points_along(const Polytope<Real, Dim>& a, const Polytope<Real, Dim>& b,
-                                                          const Pose<Real, Dim>& b_in_a,
-                                                          const Vector<Real, Dim>& normal) {
-  return common_points(facing_feature(a, normal), placed(facing_feature(b, b_in_a.local_direction(-normal)), b_in_a),
-                       normal);
+void find_common_points_along(const Polytope<Real, Dim>& a, const Polytope<Real, Dim>& b, const Pose<Real, Dim>& b_in_a,
+                              const Vector<Real, Dim>& normal, CommonPoints<Real, Dim>& common) {
+  common.clear();
+  Feature<Real, Dim> of_a, of_b;
+  find_facing_feature(a, normal, of_a);
+  find_facing_feature(b, b_in_a.local_direction(-normal), of_b);
+  place(of_b, b_in_a);
+  find_common_points(of_a, of_b, normal, common);
+}
+
+/// The manifold with these points of the cores, of which those within the margin and so many as are needed are kept.
+template <class Real, int Dim>
+[[nodiscard]] Manifold<Real, Dim> manifold_of(CommonPoints<Real, Dim>& common, const Vector<Real, Dim>& normal,
+                                              const Real& rounding_a, const Real& rounding_b, const Real& margin) {
+  Manifold<Real, Dim> result;
+  const Real roundings = rounding_a + rounding_b;
+  result.normal = normal;
+  common.drop_beyond(margin + roundings);
+  common.reduce(normal, Manifold<Real, Dim>::most_points);
+  for (const CommonPoint<Real, Dim>& point : common) {
+    // From the core of a, along the normal: the surface of a, then that of b; between them the middle.
+    const Real to_middle = (rounding_a + point.separation - rounding_b) / 2;
+    result.points[result.size++] = {point.on_a + normal * to_middle, point.separation - roundings, point.feature};
+  }
+  return result;
+}
+
+/// Whether a point is as near as the bodies are along an axis.
+template <class Real, int Dim>
+[[nodiscard]] bool has_point_within(const CommonPoints<Real, Dim>& common, const Real& separation) {
+  return std::any_of(common.begin(), common.end(),
+                     [&](const CommonPoint<Real, Dim>& point) { return point.separation <= separation; });
 }
 
 /// The manifold of bodies a and b, where `b_in_a` is the pose of b in the frame of a: empty where they are farther
@@ -78,33 +106,21 @@ template <class Real, int Dim>
 [[nodiscard]] Manifold<Real, Dim> manifold(const Convex<Real, Dim>& a, const Convex<Real, Dim>& b,
                                            const Pose<Real, Dim>& b_in_a, const Real& margin) {
   const Real roundings = a.rounding + b.rounding, size = a.reach < b.reach ? a.reach : b.reach;
-  Manifold<Real, Dim> result;
+  CommonPoints<Real, Dim> common;
   const ClosestPoints<Real, Dim> closest = closest_points(a.core, b.core, b_in_a);
-  if (closest.distance > roundings + margin) return result;
+  if (closest.distance > roundings + margin) return {};
   const bool is_apart = closest.distance > Real(1e-5) * size;
   SeparatingAxis<Real, Dim> axis{closest.normal, closest.distance, closest.on_a};
   if (!is_apart) axis = least_overlap(a.core, b.core, b_in_a, Real(1e-3) * size);
-  CommonPoints<Real, Dim> common = common_points_along(a.core, b.core, b_in_a, axis.normal);
+  find_common_points_along(a.core, b.core, b_in_a, axis.normal, common);
   // Where a corner or crossing edges are closest, their features need not have points above each other.
-  const auto has_closest = [&] {
-    return std::any_of(common.begin(), common.end(), [&](const CommonPoint<Real, Dim>& point) {
-      return point.separation <= axis.separation + Real(1e-2) * size;
-    });
-  };
-  if (!is_apart && !has_closest()) {
+  if (!is_apart && !has_point_within(common, axis.separation + Real(1e-2) * size)) {
     axis = least_overlap(a.core, b.core, b_in_a, Real(0));
-    common = common_points_along(a.core, b.core, b_in_a, axis.normal);
+    find_common_points_along(a.core, b.core, b_in_a, axis.normal, common);
   }
-  if (!has_closest()) common.add({axis.on_a, axis.separation, CommonPoint<Real, Dim>::closest});
-  result.normal = axis.normal;
-  common.drop_beyond(margin + roundings);
-  common.reduce(axis.normal, Manifold<Real, Dim>::most_points);
-  for (const CommonPoint<Real, Dim>& point : common) {
-    // From the core of a, along the normal: the surface of a, then that of b; between them the middle.
-    const Real to_middle = (a.rounding + point.separation - b.rounding) / 2;
-    result.points[result.size++] = {point.on_a + axis.normal * to_middle, point.separation - roundings, point.feature};
-  }
-  return result;
+  if (!has_point_within(common, axis.separation + Real(1e-2) * size))
+    common.add({axis.on_a, axis.separation, CommonPoint<Real, Dim>::closest});
+  return manifold_of(common, axis.normal, a.rounding, b.rounding, margin);
 }
 
 }  // namespace continuo

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "random_shapes.hpp"
+#include <continuo/shapes/box_manifold.hpp>
 #include <continuo/shapes/closest_points.hpp>
 #include <continuo/shapes/manifold.hpp>
 
@@ -15,11 +16,17 @@ struct Pair {
   const Convex<double, Dim>& b;
   Pose<double, Dim> b_in_a;
 };
+template <int Dim>
+Convex<double, Dim> random_box(std::mt19937& engine) {
+  Vector<double, Dim> size = random_point<Dim>(engine);
+  for (double& side : size.components) side = 0.1 + std::abs(side);
+  return *convex_body<double>(*box(size), 0);
+}
 template <int Dim, class Check>
-void for_random_pairs(int count, Check&& check) {
+void for_random_pairs(int count, Convex<double, Dim> (*make)(std::mt19937&), Check&& check) {
   std::mt19937 engine(6);
   std::vector<Convex<double, Dim>> bodies;
-  while (bodies.size() < 60) bodies.push_back(random_body<Dim>(engine));
+  while (bodies.size() < 60) bodies.push_back(make(engine));
   for (int k = 0; k < count; ++k) {
     SCOPED_TRACE(k);
     Pose<double, Dim> pose{random_direction<Dim>(engine) * (1.2 * (1 + random_point<1>(engine)[0])),
@@ -32,7 +39,7 @@ void for_random_pairs(int count, Check&& check) {
 // Points of both at the distance, and a direction along which the whole bodies are as far apart: no points are closer.
 template <int Dim>
 void closest_points_are_closest() {
-  for_random_pairs<Dim>(1500, [](const Pair<Dim>& pair, std::mt19937&) {
+  for_random_pairs<Dim>(1500, random_body<Dim>, [](const Pair<Dim>& pair, std::mt19937&) {
     const auto closest = closest_points(pair.a.core, pair.b.core, pair.b_in_a);
     if (closest.distance == 0) return;  // the manifold proves the overlap
     EXPECT_NEAR(length(closest.on_a - closest.on_b), closest.distance, 1e-12);
@@ -58,13 +65,13 @@ void check_points(const Pair<Dim>& pair, const Manifold<double, Dim>& contact) {
     EXPECT_LT(outside(pair.b.core, pair.b_in_a.local(on_a + contact.normal * separation)), 1e-6);
   }
 }
-template <int Dim>
-void manifolds_are_contacts() {
+template <int Dim, class Find>
+void manifolds_are_contacts(Convex<double, Dim> (*make)(std::mt19937&), Find&& find) {
   int apart = 0, overlapping = 0;
-  for_random_pairs<Dim>(1500, [&](const Pair<Dim>& pair, std::mt19937& engine) {
+  for_random_pairs<Dim>(2500, make, [&](const Pair<Dim>& pair, std::mt19937& engine) {
     const double margin = 0.1, roundings = pair.a.rounding + pair.b.rounding;
     const double distance = closest_points(pair.a.core, pair.b.core, pair.b_in_a).distance;
-    const auto contact = manifold(pair.a, pair.b, pair.b_in_a, margin);
+    const auto contact = find(pair, margin);
     EXPECT_EQ(contact.size > 0, distance <= roundings + margin);
     if (contact.size == 0) return;
     EXPECT_NEAR(length(contact.normal), 1, 1e-12);
@@ -91,7 +98,28 @@ void manifolds_are_contacts() {
   EXPECT_GT(overlapping, 100);
 }
 TEST(Manifold, IsAContactOfLeastOverlap) {
-  manifolds_are_contacts<2>(), manifolds_are_contacts<3>();
+  const auto find = [](const auto& pair, double margin) { return manifold(pair.a, pair.b, pair.b_in_a, margin); };
+  manifolds_are_contacts<2>(random_body<2>, find), manifolds_are_contacts<3>(random_body<3>, find);
+}
+
+template <int Dim>
+void manifolds_of_boxes_are_contacts() {
+  const auto find = [](const Pair<Dim>& pair, double margin) {
+    const auto half_a = half_sides(pair.a), half_b = half_sides(pair.b);
+    for (std::size_t i = 0; i < Dim; ++i) EXPECT_GE(std::min(half_a[i], half_b[i]), 0.05);
+    return manifold_of_boxes(pair.a, pair.b, {half_a, half_b, pair.b_in_a}, margin);
+  };
+  manifolds_are_contacts<Dim>(random_box<Dim>, find);
+}
+TEST(Manifold, OfBoxesIsAContactOfLeastOverlap) {
+  manifolds_of_boxes_are_contacts<2>(), manifolds_of_boxes_are_contacts<3>();
+}
+TEST(Manifold, KnowsBoxes) {
+  std::mt19937 engine(3);
+  EXPECT_EQ(half_sides(*convex_body<double>(*box<3>({{1, 2, 3}}), 0)), (Vector<double, 3>{{0.5, 1, 1.5}}));
+  EXPECT_EQ(half_sides(*convex_body<double>(*box<3>({{1, 2, 3}}), 0.1)), (Vector<double, 3>{}));
+  EXPECT_EQ(half_sides(*convex_body<double>(random_hull<3>(engine, 8), 0)), (Vector<double, 3>{}));
+  EXPECT_EQ(half_sides(*convex_body<double>(random_hull<2>(engine, 4), 0)), (Vector<double, 2>{}));
 }
 
 // A box that slides over another one keeps four points, each with the feature it had.

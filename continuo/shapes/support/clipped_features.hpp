@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include <continuo/shapes/matrix.hpp>
@@ -13,12 +14,31 @@
 
 namespace continuo {
 
+/// An array whose numbers are nothing at first: to clear arrays of 64 corners takes longer than to fill four of them.
+template <class T, std::size_t Most>
+class UnclearedArray {
+ public:
+  static_assert(std::is_trivially_destructible_v<T> && std::is_trivially_copyable_v<T>);
+  UnclearedArray() {}  // NOLINT: leaves the bytes as they are
+  UnclearedArray(const UnclearedArray&) = delete;
+  UnclearedArray& operator=(const UnclearedArray&) = delete;
+
+  [[nodiscard]] T* data() { return reinterpret_cast<T*>(bytes_); }
+  [[nodiscard]] const T* data() const { return reinterpret_cast<const T*>(bytes_); }
+  [[nodiscard]] T& operator[](std::size_t i) { return data()[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return data()[i]; }
+  [[nodiscard]] static constexpr std::size_t size() { return Most; }
+
+ private:
+  alignas(T) std::byte bytes_[Most * sizeof(T)];
+};
+
 /// A face, a segment or a corner of a polytope: its corners in order, with their numbers.
 template <class Real, int Dim>
 struct Feature {
   static constexpr std::size_t most_corners = Dim == 2 ? 2 : Polytope<Real, 3>::most_corners;
-  std::array<Vector<Real, Dim>, most_corners> corners;
-  std::array<std::uint8_t, most_corners> numbers;
+  UnclearedArray<Vector<Real, Dim>, most_corners> corners;
+  UnclearedArray<std::uint8_t, most_corners> numbers;
   std::size_t size = 0;
   Vector<Real, Dim> normal{};  // of a face; 0 of a segment in space and of a corner
 
@@ -31,9 +51,8 @@ struct Feature {
 /// The face whose normal is nearest to the direction. Of a segment: the whole, or the end that is farther in the
 /// direction where it is steeper than 1 in 20.
 template <class Real, int Dim>
-[[nodiscard]] Feature<Real, Dim> facing_feature(const Polytope<Real, Dim>& polytope,
-                                                const Vector<Real, Dim>& direction) {
-  Feature<Real, Dim> feature;
+void find_facing_feature(const Polytope<Real, Dim>& polytope, const Vector<Real, Dim>& direction,
+                         Feature<Real, Dim>& feature) {
   const auto& corners = polytope.corners;
   if (polytope.faces.empty()) {
     const Vector<Real, Dim> along = corners.back() - corners.front();
@@ -41,7 +60,7 @@ template <class Real, int Dim>
     const bool is_whole = corners.size() > 1 && std::abs(rise) < Real(0.05) * length(along);
     if (is_whole || !(rise > Real(0))) feature.add(corners.front(), 0);
     if (is_whole || rise > Real(0)) feature.add(corners.back(), corners.size() - 1);
-    return feature;
+    return;
   }
   std::size_t best = 0;
   for (std::size_t face = 1; face < polytope.faces.size(); ++face)
@@ -53,13 +72,11 @@ template <class Real, int Dim>
   } else {
     for (const std::uint8_t corner : polytope.loop(best)) feature.add(corners[corner], corner);
   }
-  return feature;
 }
 template <class Real, int Dim>
-[[nodiscard]] Feature<Real, Dim> placed(Feature<Real, Dim> feature, const Pose<Real, Dim>& pose) {
+void place(Feature<Real, Dim>& feature, const Pose<Real, Dim>& pose) {
   for (std::size_t i = 0; i < feature.size; ++i) feature.corners[i] = pose.place(feature.corners[i]);
   feature.normal = pose.axes * feature.normal;
-  return feature;
 }
 
 /// A point of the core of the first body that has a point of the core of the second above it, along the normal.
@@ -79,14 +96,14 @@ class CommonPoints {
   void add(const Point& point) {
     if (size_ < points_.size()) points_[size_++] = point;
   }
-  [[nodiscard]] bool empty() const { return size_ == 0; }
+  void clear() { size_ = 0; }
   [[nodiscard]] const Point* begin() const { return points_.data(); }
   [[nodiscard]] const Point* end() const { return points_.data() + size_; }
 
   void drop_beyond(const Real& margin) {
-    const auto kept = std::remove_if(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(size_),
-                                     [&](const Point& point) { return point.separation > margin; });
-    size_ = static_cast<std::size_t>(kept - points_.begin());
+    Point* const kept = std::remove_if(points_.data(), points_.data() + size_,
+                                       [&](const Point& point) { return point.separation > margin; });
+    size_ = static_cast<std::size_t>(kept - points_.data());
   }
   /// Keeps so many: the deepest one, the one farthest from it, and in space the two that span the largest areas on
   /// either side of their line.
@@ -111,7 +128,7 @@ class CommonPoints {
     std::swap(points_[place], points_[best]);
   }
 
-  std::array<Point, 2 * Polytope<Real, Dim>::most_corners> points_;
+  UnclearedArray<Point, 2 * Polytope<Real, Dim>::most_corners> points_;
   std::size_t size_ = 0;
 };
 
@@ -172,7 +189,7 @@ template <class Real>
 class CutPolygon {
  public:
   explicit CutPolygon(const Feature<Real, 3>& polygon) : size_(polygon.size) {
-    for (std::size_t i = 0; i < size_; ++i) corners_[i] = {polygon.corners[i], polygon.numbers[i]};
+    for (std::size_t i = 0; i < size_; ++i) both_[0][i] = {polygon.corners[i], polygon.numbers[i]};
   }
   void cut(const Feature<Real, 3>& by, const Vector<Real, 3>& normal) {
     for (std::size_t i = 0; i < by.size && size_ > 0; ++i) {
@@ -183,36 +200,38 @@ class CutPolygon {
       cut_by_plane(outwards, dot(outwards, by.corners[i]), by.numbers[i]);
     }
   }
-  [[nodiscard]] const CutCorner<Real>* begin() const { return corners_.data(); }
-  [[nodiscard]] const CutCorner<Real>* end() const { return corners_.data() + size_; }
+  [[nodiscard]] const CutCorner<Real>* begin() const { return both_[now_].data(); }
+  [[nodiscard]] const CutCorner<Real>* end() const { return both_[now_].data() + size_; }
 
  private:
-  using Corners = std::array<CutCorner<Real>, 2 * Polytope<Real, 3>::most_corners>;
+  using Corners = UnclearedArray<CutCorner<Real>, 2 * Polytope<Real, 3>::most_corners>;
 
   // Keeps the points x with outwards . x <= offset.
   void cut_by_plane(const Vector<Real, 3>& outwards, const Real& offset, std::uint8_t side) {
-    Corners kept;
+    const Corners& corners = both_[now_];
+    Corners& kept = both_[1 - now_];
     std::size_t count = 0;
-    const auto beyond = [&](std::size_t i) { return dot(outwards, corners_[i].x) - offset; };
+    const auto beyond = [&](std::size_t i) { return dot(outwards, corners[i].x) - offset; };
     const std::size_t sides = size_ == 2 ? 1 : size_;  // a segment does not come back
     const auto crossing = [&](std::size_t i, std::size_t j, const Real& at_i, const Real& at_j) {
-      const std::uint32_t feature = (corners_[i].feature & 0xffu) | (std::uint32_t{side} + 1) << 8;
+      const std::uint32_t feature = (corners[i].feature & 0xffu) | (std::uint32_t{side} + 1) << 8;
       if (count < kept.size())
-        kept[count++] = {corners_[i].x + (corners_[j].x - corners_[i].x) * (at_i / (at_i - at_j)), feature};
+        kept[count++] = {corners[i].x + (corners[j].x - corners[i].x) * (at_i / (at_i - at_j)), feature};
     };
     for (std::size_t i = 0; i < size_; ++i) {
       const Real at_i = beyond(i);
-      if (at_i <= Real(0) && count < kept.size()) kept[count++] = corners_[i];
+      if (at_i <= Real(0) && count < kept.size()) kept[count++] = corners[i];
       if (i >= sides) break;
       const std::size_t j = (i + 1) % size_;
       const Real at_j = beyond(j);
       if ((at_i < Real(0) && at_j > Real(0)) || (at_i > Real(0) && at_j < Real(0))) crossing(i, j, at_i, at_j);
     }
-    corners_ = kept;
+    now_ = 1 - now_;
     size_ = count;
   }
 
-  Corners corners_;
+  Corners both_[2];
+  std::size_t now_ = 0;
   std::size_t size_;
 };
 
@@ -238,19 +257,18 @@ void add_common_with_face(const Feature<Real, 3>& face, const Feature<Real, 3>& 
 /// The points of feature a that have points of feature b above them, seen along the normal: of the area, or the length,
 /// that they have in common, the corners.
 template <class Real, int Dim>
-[[nodiscard]] CommonPoints<Real, Dim> common_points(const Feature<Real, Dim>& a, const Feature<Real, Dim>& b,
-                                                    const Vector<Real, Dim>& normal) {
-  CommonPoints<Real, Dim> common;
+void find_common_points(const Feature<Real, Dim>& a, const Feature<Real, Dim>& b, const Vector<Real, Dim>& normal,
+                        CommonPoints<Real, Dim>& common) {
   if constexpr (Dim == 3) {
     const bool is_face_a = a.size > 2, is_face_b = b.size > 2;
     // The face that is seen more nearly from above cuts the other.
     if (is_face_a && (!is_face_b || std::abs(dot(a.normal, normal)) >= std::abs(dot(b.normal, normal)) - Real(1e-3))) {
       add_common_with_face(a, b, normal, true, common);
-      return common;
+      return;
     }
     if (is_face_b) {
       add_common_with_face(b, a, normal, false, common);
-      return common;
+      return;
     }
   }
   if constexpr (Dim == 2) {
@@ -261,14 +279,13 @@ template <class Real, int Dim>
     if constexpr (Dim == 3) {
       // Segments that are not nearly parallel cross in one point, the closest one.
       const Vector<Real, 3> across = moment(u, v);
-      if (squared(across) > Real(0.0025) * squared(u) * squared(v)) return common;
+      if (squared(across) > Real(0.0025) * squared(u) * squared(v)) return;
     }
     const Real seen_a = squared(u) - dot(u, normal) * dot(u, normal);
     const Real seen_b = squared(v) - dot(v, normal) * dot(v, normal);
     if (seen_a > Real(0.0025) * squared(u) && seen_b > Real(0.0025) * squared(v))
       add_common_of_segments(a, b, normal, common);
   }
-  return common;
 }
 
 }  // namespace continuo
