@@ -29,18 +29,22 @@ enum class ContactChange : std::uint8_t {
 template <class Real, int Dim>
 struct ContactEvent {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();  // `wall` of two bodies
+  static constexpr std::uint32_t no_mesh = no_wall;                                    // `mesh`, if it is none
 
   ContactChange change = ContactChange::impact;  // what happens
   BodyHandle a{};                                // a body
-  BodyHandle b{};                                // the other one; unused in a contact with a wall
+  BodyHandle b{};                                // the other one; unused in a contact with a wall or a mesh
   std::uint32_t wall = no_wall;                  // its number in world.walls()
+  std::uint32_t mesh = no_mesh;                  // its number in world.meshes()
   Vector<Real, Dim> point{};                     // of the contact
-  Vector<Real, Dim> normal{};                    // from a to b, or into the wall; of length 1
+  Vector<Real, Dim> normal{};                    // from a to b, or into the wall or mesh; of length 1
   Real impulse{};                                // along the normal: of the impact; at `end`, of the whole contact
   Real time{};                                   // of the world
 
   /// Whether b is a wall.
   [[nodiscard]] bool with_wall() const { return wall != no_wall; }
+  /// Whether b is a static mesh.
+  [[nodiscard]] bool with_mesh() const { return mesh != no_mesh; }
 };
 
 /// The contact events of one call: the first `most` of them, and the number of the others.
@@ -71,7 +75,7 @@ class ContactLog {
     if (other.events_.empty()) return;
     for (ContactEvent<Real, Dim>& event : other.events_) {
       event.a = rename(event.a);
-      if (!event.with_wall()) event.b = rename(event.b);
+      if (!event.with_wall() && !event.with_mesh()) event.b = rename(event.b);
     }
     using Event = ContactEvent<Real, Dim>;
     const auto first = std::ranges::upper_bound(events_, other.events_.front().time, {}, &Event::time);

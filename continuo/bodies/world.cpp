@@ -210,7 +210,7 @@ template <class Real, int Dim>
 World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) const {
   World some;
   some.gravity = gravity, some.combine_rule = combine_rule, some.time = time;
-  some.walls_ = walls_, some.ignored_ = ignored_;
+  some.walls_ = walls_, some.meshes_ = meshes_, some.ignored_ = ignored_;
   const auto copy = [&](auto& to, const auto& from) {
     for (const std::uint32_t i : bodies) to.push_back(from[i]);
   };

@@ -1,6 +1,6 @@
 // continuo/bodies/world.hpp
-// The state of a system of bodies at an instant: bodies, walls, joints, springs and other forces. A world is a value,
-// and a copy of it is a snapshot.
+// The state of a system of bodies at an instant: bodies, walls, static meshes, joints, springs and other forces. A
+// world is a value, and a copy of it is a snapshot.
 //
 //   World<double, 3> world;
 //   world.gravity = {{0, 0, -9.81}};
@@ -23,6 +23,7 @@
 
 #include <continuo/bodies/body.hpp>
 #include <continuo/bodies/joint.hpp>
+#include <continuo/bodies/mesh.hpp>
 #include <continuo/shapes/solid.hpp>
 #include <continuo/status/result.hpp>
 
@@ -148,7 +149,7 @@ class World {
     return {slot_of_[index], slots_[slot_of_[index]].generation};
   }
 
-  /// A world of some of the bodies, in this order, with all walls, under gravity alone.
+  /// A world of some of the bodies, in this order, with all walls and meshes, under gravity alone.
   [[nodiscard]] World part(std::span<const std::uint32_t> bodies) const;
 
   /// Fails unless normal, offset and material are valid: the normal finite and not zero. The normal is scaled to length
@@ -158,6 +159,21 @@ class World {
   [[nodiscard]] Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
   /// All walls, in the order in which they were added.
   [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
+
+  /// Adds a surface that never moves. The fast motion knows it. Fails for a shape without facets, for numbers that are
+  /// not finite, and for facets without length or area; the message says which. O(facets log(facets)).
+  Result<MeshHandle> add_mesh(const MeshDefinition<Real, Dim>& definition);
+  /// False where the world has no such mesh.
+  bool remove_mesh(MeshHandle handle);
+  /// Whether the mesh exists.
+  [[nodiscard]] bool has_mesh(MeshHandle handle) const {
+    return handle.slot < meshes_.size() && meshes_[handle.slot].geometry &&
+           meshes_[handle.slot].generation == handle.generation;
+  }
+  /// All meshes by the slots of their handles, and slots without one.
+  [[nodiscard]] std::span<const WorldMesh<Real, Dim>> meshes() const { return meshes_; }
+  /// Whether there is a mesh.
+  [[nodiscard]] bool has_meshes() const;
 
   /// Adds a joint between bodies that are where it is to hold them. Fails for a body that does not exist, for a joint
   /// of a body with itself, and for places, axes, limits, springs or motors that make no sense.
@@ -301,6 +317,7 @@ class World {
   std::size_t solid_count_ = 0;                                  // of those that are not null
   std::vector<JointSlot> joints_;
   std::size_t joint_count_ = 0;
+  std::vector<WorldMesh<Real, Dim>> meshes_;
 };
 
 /// Fails where the fields of a world contradict each other: a radius or a mass that is not above 0, an inverse mass

@@ -49,6 +49,7 @@ Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (Status fault = check_bodies(*world_); !fault) return fault;
   if (world_->has_solids() || world_->joint_count() > 0)
     return invalid_input("the exact motion moves balls without joints: use FastMotion for other shapes and for joints");
+  if (world_->has_meshes()) return invalid_input("the exact motion knows no static meshes: use FastMotion for them");
   for (std::size_t i = 0; world_->has_traits() && i < world_->size(); ++i) {
     BodyTraits<Real> traits = world_->traits(i);
     traits.user_data = 0;

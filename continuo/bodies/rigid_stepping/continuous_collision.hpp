@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
+#include <continuo/bodies/rigid_stepping/mesh_passage.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
+#include <continuo/bodies/rigid_stepping/time_of_depth.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/shapes/cast.hpp>
 
@@ -45,32 +47,6 @@ template <class Real, int Dim>
   return moving;
 }
 
-/// The time within the step at which two parts that touch at its beginning are deeper in each other, along the normal
-/// of their contact, than `depth`; the duration where they never are.
-template <class Real, int Dim>
-[[nodiscard]] Real time_of_depth(const MovingBody<Real, Dim>& a, const MovingBody<Real, Dim>& b,
-                                 const Vector<Real, Dim>& normal, const Real& depth, const Real& duration) {
-  constexpr int most_rounds = 100;
-  const auto reach = [](const MovingBody<Real, Dim>& body) {
-    return length(body.spin) * (body.shape->reach - body.shape->rounding);
-  };
-  const Real approach = dot(normal, a.velocity - b.velocity) + reach(a) + reach(b);
-  if (!(approach > Real(0))) return duration;
-  const auto highest = [](const MovingBody<Real, Dim>& body, const Vector<Real, Dim>& direction, const Real& time) {
-    const Pose<Real, Dim> pose = body.at(time);
-    const auto& core = body.shape->core;
-    return dot(direction, pose.place(core.corners[support(core, pose.local_direction(direction))])) +
-           body.shape->rounding;
-  };
-  Real time(0);
-  for (int round = 0; round < most_rounds && time < duration; ++round) {
-    const Real room = depth - highest(a, normal, time) - highest(b, -normal, time);
-    if (room < depth / 100) return time;
-    time += room / approach;
-  }
-  return std::min(time, duration);
-}
-
 /// The time of the step after which each body stops.
 template <class Real, int Dim>
 class StoppingTimes {
@@ -101,11 +77,15 @@ class StoppingTimes {
                                          part.inner_radius / 100);
       if (contact && contact->time > Real(0)) stop(part.body, contact->time);
     });
+    for (const WorldMesh<Real, Dim>& mesh : world_.meshes())
+      if (mesh.collides(world_.traits(part.body)))
+        stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, until_[part.body], step_));
   }
   /// Stops where a contact of the beginning of the step becomes deep: the body turns about its first point into the
   /// other one.
   void find_depth(const PartContact<Real, Dim>& found) {
     const auto parts = pairs_.parts();
+    if (found.parts.b >= pairs_.first_mesh()) return;  // found with its facets, which have borders
     const bool is_wall = found.parts.b >= parts.size();
     const RigidPart<Real, Dim>& a = parts[found.parts.a];
     const bool is_a_fast = is_fast(a), is_b_fast = !is_wall && is_fast(parts[found.parts.b]);

@@ -17,8 +17,8 @@ struct FastMotion<Real, Dim>::Steppers {
 
   /// Makes the stepper that the world needs now, if it has the other one.
   void choose() {
-    const bool needs_any =
-        world.has_solids() || world.joint_count() > 0 || world.has_traits() || world.may_collide || world.may_push;
+    const bool needs_any = world.has_solids() || world.joint_count() > 0 || world.has_traits() || world.has_meshes() ||
+                           world.may_collide || world.may_push;
     if (needs_any ? any.has_value() : balls.has_value()) return;
     const FastStatistics so_far = any ? any->statistics : balls ? balls->statistics : FastStatistics{};
     any.reset(), balls.reset();

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/meshes/mesh_manifolds.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contact.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_pairs.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
@@ -15,7 +16,8 @@
 
 namespace continuo {
 
-/// A contact of the parts of two bodies, or of one and a wall, which is body number `bodies + wall`.
+/// A contact of the parts of two bodies, or of one and a wall, which is body number `bodies + wall`, or of one and a
+/// mesh, of which the body is the world itself. With a mesh, one part can have several contacts.
 template <class Real, int Dim>
 struct PartContact {
   PartPair parts;
@@ -91,6 +93,7 @@ class RigidContacts {
   void find(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
             std::span<const RigidBody<Real, Dim>> bodies, const Real& step, const PartPair& pair, IsActive&& is_active,
             std::vector<PartContact<Real, Dim>>& found) const {
+    if (pair.b >= pairs.first_mesh()) return find_at_mesh(world, pairs, bodies, step, pair, is_active, found);
     const auto parts = pairs.parts();
     const RigidPart<Real, Dim>& part_a = parts[pair.a];
     const bool is_wall = pair.b >= parts.size();
@@ -125,6 +128,31 @@ class RigidContacts {
     const Material<Real>& of_b = is_wall ? world.walls()[wall].material : world.material[b];
     const Material<Real> both = combined(world.combine_rule, world.material[a], of_b);
     made.contact.friction = both.friction, made.contact.restitution = both.restitution;
+  }
+  template <class IsActive>
+  void find_at_mesh(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+                    std::span<const RigidBody<Real, Dim>> bodies, const Real& step, const PartPair& pair,
+                    IsActive&& is_active, std::vector<PartContact<Real, Dim>>& found) const {
+    const RigidPart<Real, Dim>& part = pairs.parts()[pair.a];
+    const std::uint32_t a = part.body, ground = static_cast<std::uint32_t>(world.size() + world.walls().size());
+    const auto before = std::ranges::equal_range(before_, pair, {}, &PartContact<Real, Dim>::parts);
+    if (!is_active(a, ground)) return void(found.insert(found.end(), before.begin(), before.end()));
+    const WorldMesh<Real, Dim>& mesh = world.meshes()[pair.b - pairs.first_mesh()];
+    const Material<Real> both = combined(world.combine_rule, world.material[a], mesh.material);
+    const Pose<Real, Dim> pose = part.pose(bodies[a]);
+    const Real margin = RigidPairs<Real, Dim>::contact_margin(part, bodies[a], step);
+    for_each_manifold(*part.convex, pose, *mesh.geometry, margin, [&](const Manifold<Real, Dim>& touching) {
+      // The one before is that with nearly the same normal.
+      const V normal = pose.axes * touching.normal;
+      Real greatest = Real(0.9);
+      const RigidContact<Real, Dim>* old = nullptr;
+      for (const PartContact<Real, Dim>& one : before)
+        if (const Real cosine = dot(one.contact.normal, normal); cosine > greatest)
+          greatest = cosine, old = &one.contact;
+      PartContact<Real, Dim>& made = found.emplace_back(PartContact<Real, Dim>{pair, a, ground, {}});
+      made.contact = contact_of(touching, pose, bodies[a], bodies[ground], old);
+      made.contact.friction = both.friction, made.contact.restitution = both.restitution;
+    });
   }
   [[nodiscard]] const PartContact<Real, Dim>* find_before(const PartPair& pair) const {
     const auto at = std::ranges::lower_bound(before_, pair, {}, &PartContact<Real, Dim>::parts);

@@ -10,14 +10,16 @@
 #include <vector>
 
 #include <continuo/bodies/bounds/bounds_tree.hpp>
+#include <continuo/bodies/bounds/convex_bounds.hpp>
+#include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
 
-/// A part of a body, and a part of another body or a wall, in this order.
+/// A part of a body, and a part of another body, a wall or a static mesh, in this order.
 struct PartPair {
-  std::uint32_t a = 0, b = 0;  // parts, or b = number of parts + wall
+  std::uint32_t a = 0, b = 0;  // parts, or b = number of parts + wall, or number of parts and walls + mesh
   friend auto operator<=>(const PartPair&, const PartPair&) = default;
 };
 
@@ -33,17 +35,6 @@ struct RigidPart {
     return {of.x + of.axes * in_body.centre, of.axes * in_body.axes};
   }
 };
-
-/// The bounds of a convex body in a pose.
-template <class Real, int Dim>
-[[nodiscard]] Bounds<Real, Dim> bounds_of(const Convex<Real, Dim>& convex, const Pose<Real, Dim>& pose) {
-  Bounds<Real, Dim> bounds;
-  for (const Vector<Real, Dim>& corner : convex.core.corners) {
-    const Vector<Real, Dim> x = pose.place(corner);
-    bounds = united(bounds, Bounds<Real, Dim>{x, x});
-  }
-  return grown(bounds, convex.rounding);
-}
 
 template <class Real, int Dim>
 class RigidPairs {
@@ -66,11 +57,20 @@ class RigidPairs {
       ball.rounding = ball.reach = world.radius[i];
       parts_.push_back({i, &ball, {}, ball.rounding});
     }
+    meshes_.clear();
+    for (const WorldMesh<Real, Dim>& mesh : world.meshes()) meshes_.push_back(mesh.geometry);
+    first_mesh_ = static_cast<std::uint32_t>(parts_.size() + world.walls().size());
     is_new_ = true;
   }
+  /// Whether the meshes of the world are still these.
+  [[nodiscard]] bool has_meshes_of(const World<Real, Dim>& world) const {
+    return std::ranges::equal(meshes_, world.meshes(), {}, {}, &WorldMesh<Real, Dim>::geometry);
+  }
+  /// The number of the first mesh in pairs.
+  [[nodiscard]] std::uint32_t first_mesh() const { return first_mesh_; }
   /// Whether the bodies of the world still have these parts: the caller may have exchanged some.
   [[nodiscard]] bool is_of(const World<Real, Dim>& world) const {
-    if (solids_.size() != world.size()) return false;
+    if (solids_.size() != world.size() || !has_meshes_of(world)) return false;
     for (std::size_t i = 0, ball = 0; i < solids_.size(); ++i) {
       if (solids_[i].get() != world.solid(i)) return false;
       if (!solids_[i] && balls_[ball++].rounding != world.radius[i]) return false;
@@ -152,6 +152,9 @@ class RigidPairs {
       if (walls[k].thin) side = std::abs(side);
       if (side <= reach) pairs_.push_back({i, static_cast<std::uint32_t>(parts_.size()) + k});
     }
+    for (std::uint32_t k = 0; k < meshes_.size(); ++k)
+      if (world.meshes()[k].collides(world.traits(parts_[i].body)) && overlap(rooms_[i], meshes_[k]->bounds()))
+        pairs_.push_back({i, first_mesh_ + k});
   }
 
  public:
@@ -164,7 +167,9 @@ class RigidPairs {
 
  private:
   std::vector<RigidPart<Real, Dim>> parts_;
-  std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;  // of each body; the parts refer to them
+  std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;       // of each body; the parts refer to them
+  std::vector<std::shared_ptr<const StaticMesh<Real, Dim>>> meshes_;  // of the world
+  std::uint32_t first_mesh_ = 0;
   std::vector<Convex<Real, Dim>> balls_;
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<std::uint32_t> moved_;

@@ -95,10 +95,10 @@ class RigidStepper {
   [[nodiscard]] Status check_world() const {
     if (Status fault = check(options_, world_); !fault) return fault;
     if (options_.integrator != ForceIntegrator::semi_implicit_euler)
-      return invalid_input("bodies other than balls, and joints, are moved by semi-implicit Euler only");
+      return invalid_input("bodies other than balls, joints and static meshes need semi-implicit Euler");
     for (const Material<Real>& material : world_.material)
       if (material.rolling_resistance > Real(0))
-        return invalid_input("rolling resistance exists only in worlds of balls without joints");
+        return invalid_input("rolling resistance exists only in worlds of balls without joints and static meshes");
     for (const JointHandle handle : world_.joints()) {
       const Joint<Real, Dim>& joint = *world_.find(handle);
       if (!world_.contains(joint.b) || (joint.a != BodyHandle{} && !world_.contains(joint.a)))
@@ -118,6 +118,7 @@ class RigidStepper {
   /// sleeps is fixed for this step.
   void load() {
     const std::size_t n = world_.size(), walls = world_.walls().size();
+    if (!is_stale_ && !pairs_.has_meshes_of(world_)) sleep_ = {};
     if (is_stale_ || bodies_.size() != n + walls + 1 || !pairs_.is_of(world_)) {
       bodies_.assign(n + walls + 1, {});
       pairs_.begin(world_);
@@ -458,7 +459,9 @@ class RigidStepper {
       } else
         event.point *= static_cast<Real>(options_.substeps) / event.impulse;
       event.normal = found.contact.normal;
-      if (found.b >= world_.size()) {
+      if (found.parts.b >= pairs_.first_mesh()) {
+        event.mesh = found.parts.b - pairs_.first_mesh();
+      } else if (found.b >= world_.size()) {
         event.wall = static_cast<std::uint32_t>(found.b - world_.size());
       } else {
         event.b = world_.handle(found.b);
@@ -484,7 +487,7 @@ class RigidStepper {
   };
   template <class Archive>
   void transfer(Archive& archive) {
-    contacts_.transfer(archive, world_.size() + world_.walls().size());
+    contacts_.transfer(archive, world_.size() + world_.walls().size() + 1);
     auto joints = static_cast<std::uint64_t>(joints_.size());
     archive(joints);
     if constexpr (Archive::reads) {

@@ -1,4 +1,4 @@
-// Writes and reads the shapes and joints of a world, with every value checked.
+// Writes and reads the shapes, static meshes and joints of a world, with every value checked.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <continuo/bodies/joint.hpp>
+#include <continuo/bodies/mesh.hpp>
 #include <continuo/bodies/support/bytes.hpp>
 
 namespace continuo::detail::snapshots {
@@ -26,6 +27,27 @@ void transfer(Archive& archive, Box<Real, Dim>& box) {
 template <class Archive, class Real, int Dim>
 void transfer(Archive& archive, Hull<Real, Dim>& hull) {
   archive(hull.points), archive(hull.rounding);
+}
+template <class Archive, class Value, class Transfer>
+void transfer_optional(Archive& archive, std::optional<Value>& value, Transfer&& transfer_value) {
+  bool is_there = value.has_value();
+  archive(is_there);
+  if constexpr (Archive::reads) value = is_there ? std::optional<Value>(Value{}) : std::nullopt;
+  if (value) transfer_value(*value);
+}
+template <class Archive, class Real>
+void transfer(Archive& archive, Chain<Real>& chain) {
+  archive(chain.points), archive(chain.is_loop), archive(chain.is_two_sided);
+  transfer_optional(archive, chain.before, archive);
+  transfer_optional(archive, chain.after, archive);
+}
+template <class Archive, class Real>
+void transfer(Archive& archive, TriangleMesh<Real>& mesh) {
+  archive(mesh.corners), archive(mesh.triangles), archive(mesh.is_two_sided);
+}
+template <class Archive, class Real, int Dim>
+void transfer(Archive& archive, HeightField<Real, Dim>& field) {
+  archive(field.origin), archive(field.spacing), archive(field.counts), archive(field.heights);
 }
 template <class Archive, class Real, int Dim>
 void transfer(Archive& archive, Compound<Real, Dim>& compound);
@@ -68,13 +90,6 @@ void transfer(Archive& archive, BodyTraits<Real>& traits) {
                    "traits that no body can have");
 }
 
-template <class Archive, class Value, class Transfer>
-void transfer_optional(Archive& archive, std::optional<Value>& value, Transfer&& transfer_value) {
-  bool is_there = value.has_value();
-  archive(is_there);
-  if constexpr (Archive::reads) value = is_there ? std::optional<Value>(Value{}) : std::nullopt;
-  if (value) transfer_value(*value);
-}
 /// The indices of bodies are checked by their handles, when the joint is used.
 template <class Archive, class Real, int Dim>
 void transfer(Archive& archive, Joint<Real, Dim>& joint) {

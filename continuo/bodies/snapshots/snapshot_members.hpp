@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/bodies/snapshots/shape_members.hpp>
 
@@ -136,6 +138,31 @@ struct SnapshotAccess {
   }
 
   template <class Archive, class Real, int Dim>
+  static void transfer_meshes(Archive& archive, World<Real, Dim>& world) {
+    auto meshes = static_cast<std::uint64_t>(world.meshes_.size());
+    archive(meshes);
+    if constexpr (Archive::reads) {
+      if (meshes > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      world.meshes_.assign(static_cast<std::size_t>(meshes), {});
+    }
+    for (WorldMesh<Real, Dim>& mesh : world.meshes_) {
+      bool is_there = mesh.geometry != nullptr;
+      archive(mesh.generation), archive(is_there);
+      if (!is_there) continue;
+      MeshShape<Real, Dim> shape = mesh.geometry ? mesh.geometry->shape() : MeshShape<Real, Dim>{};
+      detail::snapshots::transfer_one_of(archive, shape);
+      detail::snapshots::transfer(archive, mesh.material);
+      archive(mesh.category), archive(mesh.mask);
+      if constexpr (Archive::reads) {
+        if (!archive.ok()) return;
+        auto made = StaticMesh<Real, Dim>::of(std::move(shape));
+        if (!made) return archive.fail(made.status().message);
+        mesh.geometry = std::make_shared<const StaticMesh<Real, Dim>>(std::move(*made));
+      }
+    }
+  }
+
+  template <class Archive, class Real, int Dim>
   static void transfer_world(Archive& archive, World<Real, Dim>& world) {
     archive(world.time), archive(world.gravity);
     archive(world.attraction.constant), archive(world.attraction.softening), archive(world.attraction.opening);
@@ -167,6 +194,7 @@ struct SnapshotAccess {
     for (auto& slot : world.slots_) archive(slot.index), archive(slot.generation);
     archive(world.ignored_);
     transfer_solids(archive, world);
+    transfer_meshes(archive, world);
     if constexpr (Archive::reads) check(archive, world);
   }
 

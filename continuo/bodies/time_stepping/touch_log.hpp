@@ -17,12 +17,14 @@ namespace continuo {
 template <class Real, int Dim>
 class TouchLog {
  public:
-  /// To be called once per step for each contact, in any order, with the impulse of the step.
+  /// To be called in each step for each contact, in any order, with the impulse of the step. Contacts of the same two,
+  /// as of several parts of a compound, count as one.
   void touch(const ContactEvent<Real, Dim>& contact) { now_.push_back({key(contact), contact}); }
 
   /// The step ends at `time`.
   void end_step(const Real& time, ContactLog<Real, Dim>& log) {
-    std::ranges::sort(now_, {}, &Touch::first);
+    std::ranges::sort(now_, {}, [](const Touch& touch) { return std::pair(touch.first, -touch.second.impulse); });
+    join_equal();
     auto old = before_.begin();
     const auto end_old = [&] {
       old->second.change = ContactChange::end;
@@ -59,16 +61,28 @@ class TouchLog {
     }
     for (auto& [of, event] : before_) {
       archive(of), archive(event.a.slot), archive(event.a.generation), archive(event.b.slot);
-      archive(event.b.generation), archive(event.wall), archive(event.point), archive(event.normal);
-      archive(event.impulse);
+      archive(event.b.generation), archive(event.wall), archive(event.mesh), archive(event.point);
+      archive(event.normal), archive(event.impulse);
     }
   }
 
  private:
-  using Key = std::array<std::uint32_t, 5>;
+  using Key = std::array<std::uint32_t, 6>;
   using Touch = std::pair<Key, ContactEvent<Real, Dim>>;
   [[nodiscard]] static Key key(const ContactEvent<Real, Dim>& contact) {
-    return {contact.a.slot, contact.a.generation, contact.wall, contact.b.slot, contact.b.generation};
+    return {contact.a.slot, contact.a.generation, contact.wall, contact.mesh, contact.b.slot, contact.b.generation};
+  }
+  /// Leaves one contact of those of the same two: the first, which has the greatest impulse, with the sum of all.
+  void join_equal() {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < now_.size(); ++k) {
+      if (kept > 0 && now_[kept - 1].first == now_[k].first) {
+        now_[kept - 1].second.impulse += now_[k].second.impulse;
+      } else {
+        now_[kept++] = now_[k];
+      }
+    }
+    now_.resize(kept);
   }
 
   std::vector<Touch> before_, now_;

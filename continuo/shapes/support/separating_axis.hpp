@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include <continuo/shapes/matrix.hpp>
 #include <continuo/shapes/polytope.hpp>
@@ -89,33 +90,39 @@ template <class Real>
   return a.is_segment || b.is_segment || left_a * right_b < Real(0);
 }
 
+/// The common normal of an edge of a and one of b, where it is a face of the difference: none where it is not, or where
+/// the edges are nearly parallel. `centre_b` is anywhere beyond a, for two segments.
+template <class Real>
+[[nodiscard]] std::optional<SeparatingAxis<Real, 3>> separation_of_edges(const EdgeNormals<Real>& of_a,
+                                                                         const EdgeNormals<Real>& of_b,
+                                                                         const Vector<Real, 3>& centre_b) {
+  // At smaller angles the direction of the normal is rounding, and a normal of a face is as good.
+  constexpr Real least_sine2 = Real(1e-6);
+  if (!is_face_of_difference(of_a, of_b)) return std::nullopt;
+  Vector<Real, 3> normal = moment(of_a.along, of_b.along);
+  const Real squared_length = squared(normal);
+  if (squared_length <= least_sine2 * squared(of_a.along) * squared(of_b.along)) return std::nullopt;
+  normal *= 1 / std::sqrt(squared_length);
+  // Outwards from a: as the normals beside its edge, or for a segment away from b's.
+  const Real outwards = of_a.is_segment ? -dot(normal, of_b.left + of_b.right) : dot(normal, of_a.left + of_a.right);
+  if (of_a.is_segment && of_b.is_segment ? dot(normal, centre_b) < Real(0) : outwards < Real(0)) normal = -normal;
+  const Vector<Real, 3> between = of_b.from - of_a.from;
+  // On the line of a, where the line of b is above it: between + t along_b - s along_a is parallel to the normal.
+  const Real s = dot(moment(between, of_b.along), moment(of_a.along, of_b.along)) / squared_length;
+  return SeparatingAxis<Real, 3>{normal, dot(normal, between), of_a.from + of_a.along * s};
+}
+
 /// The greatest separation along a common normal of an edge of each.
 template <class Real>
 [[nodiscard]] SeparatingAxis<Real, 3> separation_of_edges(const Polytope<Real, 3>& a, const Polytope<Real, 3>& b,
                                                           const Pose<Real, 3>& b_in_a) {
-  // At smaller angles the direction of the normal is rounding, and a normal of a face is as good.
-  constexpr Real least_sine2 = Real(1e-6);
   SeparatingAxis<Real, 3> best;
   for_each_edge(b, [&](const EdgeNormals<Real>& in_b) {
     const EdgeNormals<Real> of_b{b_in_a.place(in_b.from), b_in_a.axes * in_b.along, b_in_a.axes * in_b.left,
                                  b_in_a.axes * in_b.right, in_b.is_segment};
     for_each_edge(a, [&](const EdgeNormals<Real>& of_a) {
-      if (!is_face_of_difference(of_a, of_b)) return;
-      Vector<Real, 3> normal = moment(of_a.along, of_b.along);
-      const Real squared_length = squared(normal);
-      if (squared_length <= least_sine2 * squared(of_a.along) * squared(of_b.along)) return;
-      normal *= 1 / std::sqrt(squared_length);
-      // Outwards from a: as the normals beside its edge, or for a segment away from b's.
-      const Real outwards =
-          of_a.is_segment ? -dot(normal, of_b.left + of_b.right) : dot(normal, of_a.left + of_a.right);
-      if (of_a.is_segment && of_b.is_segment ? dot(normal, b_in_a.centre) < Real(0) : outwards < Real(0))
-        normal = -normal;
-      const Vector<Real, 3> between = of_b.from - of_a.from;
-      const Real separation = dot(normal, between);
-      if (!(separation > best.separation)) return;
-      // On the line of a, where the line of b is above it: between + t along_b - s along_a is parallel to the normal.
-      const Real s = dot(moment(between, of_b.along), moment(of_a.along, of_b.along)) / squared_length;
-      best = {normal, separation, of_a.from + of_a.along * s};
+      const auto axis = separation_of_edges(of_a, of_b, b_in_a.centre);
+      if (axis && axis->separation > best.separation) best = *axis;
     });
   });
   return best;

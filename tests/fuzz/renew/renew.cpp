@@ -69,6 +69,15 @@ Bytes exact(const Real& t, bool has_spring) {
 template <class Real, int Dim>
 Bytes fast() {
   World<Real, Dim> world = few<Real, Dim>(true);
+  HeightField<Real, Dim> field;
+  field.counts.fill(3);
+  field.heights.assign(Dim == 2 ? 3 : 9, Real(0.1));
+  (void)world.add_mesh({.shape = field});
+  if constexpr (Dim == 2) {
+    (void)world.add_mesh({.shape = Chain<Real>{.points = {{{2, 0}}, {{0, 0}}}, .after = {{{-1, 0}}}}});
+  } else {
+    (void)world.add_mesh({.shape = TriangleMesh<Real>{{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}}, {{0, 1, 2}}}});
+  }
   FastMotion<Real, Dim> motion(world, {.contact_events = 10});
   for (int k = 0; k < 40; ++k) (void)motion.advance();
   return snapshot(world, motion);
