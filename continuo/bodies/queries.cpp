@@ -2,42 +2,24 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
+#include <continuo/bodies/bounds/convex_bounds.hpp>
+#include <continuo/bodies/meshes/mesh_rays.hpp>
 #include <continuo/bodies/queries.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/shapes/ray_entry.hpp>
 
 namespace continuo {
 
 namespace {
 
-constexpr std::size_t leaf = 4;
-
 template <class Real>
 bool is_number(const Real& value) {
   return value - value == Real(0);
-}
-
-/// The distance along the ray (of unit direction) at which it enters the box; infinity where it misses the box. Where
-/// rounding or overflow leaves this undecided the result is 0, so that no hit is lost.
-template <class Real, int Dim>
-Real entry(const Ray<Real, Dim>& ray, const Vector<Real, Dim>& lower, const Vector<Real, Dim>& upper) {
-  Real from(0), to = ray.reach;
-  for (std::size_t axis = 0; axis < lower.size(); ++axis) {
-    if (ray.direction[axis] == Real(0)) {
-      if (ray.origin[axis] < lower[axis] || ray.origin[axis] > upper[axis])
-        return std::numeric_limits<Real>::infinity();
-      continue;
-    }
-    Real near = (lower[axis] - ray.origin[axis]) / ray.direction[axis];
-    Real far = (upper[axis] - ray.origin[axis]) / ray.direction[axis];
-    if (near > far) std::swap(near, far);
-    if (near > from) from = near;
-    if (far < to) to = far;
-  }
-  // Both ends have a relative error of some units in the last place.
-  return from > to + 8 * std::numeric_limits<Real>::epsilon() * to ? std::numeric_limits<Real>::infinity() : from;
 }
 
 /// The distance along the ray to the surface of a ball; infinity where the ray misses it. The formula uses the distance
@@ -56,14 +38,6 @@ Real distance_along(const Ray<Real, Dim>& ray, const Vector<Real, Dim>& centre, 
   return distance <= ray.reach ? distance : never;
 }
 
-template <class Real, int Dim>
-Real distance_to_box(const Vector<Real, Dim>& x, const Vector<Real, Dim>& lower, const Vector<Real, Dim>& upper) {
-  Vector<Real, Dim> out;
-  for (std::size_t axis = 0; axis < x.size(); ++axis)
-    out[axis] = std::max({Real(lower[axis] - x[axis]), Real(x[axis] - upper[axis]), Real(0)});
-  return length(out);
-}
-
 /// Normalizes the direction. Fails where the ray is invalid.
 template <class Real, int Dim>
 Status prepare(Ray<Real, Dim>& ray) {
@@ -80,91 +54,38 @@ Status prepare(Ray<Real, Dim>& ray) {
   return {};
 }
 
-bool takes(const QueryFilter& filter, std::uint32_t group) {
-  return (filter.groups >> group & 1u) != 0;
-}
-
 }  // namespace
 
 template <class Real, int Dim>
-Queries<Real, Dim>::Queries(const World<Real, Dim>& world) : walls_(world.walls().begin(), world.walls().end()) {
+Queries<Real, Dim>::Queries(const World<Real, Dim>& world)
+    : walls_(world.walls().begin(), world.walls().end()), meshes_(world.meshes().begin(), world.meshes().end()) {
   items_.reserve(world.size());
-  for (std::size_t i = 0; i < world.size(); ++i)
-    if (is_finite(world.position[i]) && is_number(world.radius[i]))
-      items_.push_back({world.position[i], world.radius[i], static_cast<std::uint32_t>(i), world.group(i),
-                        world.handle(i), world.shared_solid(i),
-                        Pose<Real, Dim>{world.position[i], rotation(world.orientation[i])}});
-  std::size_t nodes = 1;
-  for (std::size_t n = items_.size(); n > leaf; n = (n + 1) / 2) nodes = 2 * nodes + 1;
-  boxes_.resize(nodes);
-  build(0, 0, items_.size());
-}
-
-template <class Real, int Dim>
-void Queries<Real, Dim>::build(std::size_t node, std::size_t first, std::size_t last) {
-  if (first == last) return;
-  const auto corners = [](const Item& item) {
-    Box box{item.x, item.x};
-    for (std::size_t axis = 0; axis < V::size(); ++axis) box.lower[axis] -= item.radius, box.upper[axis] += item.radius;
-    return box;
-  };
-  Box all = corners(items_[first]), centres{items_[first].x, items_[first].x};
-  for (std::size_t k = first + 1; k < last; ++k) {
-    const Box one = corners(items_[k]);
-    for (std::size_t axis = 0; axis < V::size(); ++axis) {
-      all.lower[axis] = std::min(all.lower[axis], one.lower[axis]);
-      all.upper[axis] = std::max(all.upper[axis], one.upper[axis]);
-      centres.lower[axis] = std::min(centres.lower[axis], items_[k].x[axis]);
-      centres.upper[axis] = std::max(centres.upper[axis], items_[k].x[axis]);
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    if (!is_finite(world.position[i]) || !is_number(world.radius[i])) continue;
+    Item item{.pose = {world.position[i], rotation(world.orientation[i])},
+              .radius = world.radius[i],
+              .number = static_cast<std::uint32_t>(i),
+              .group = world.group(i),
+              .category = world.traits(i).category,
+              .body = world.handle(i)};
+    item.solid = world.shared_solid(i);
+    if (!item.solid) items_.push_back(item);
+    for (std::size_t k = 0; item.solid && k < item.solid->parts.size(); ++k) {
+      const SolidPart<Real, Dim>& part = item.solid->parts[k];
+      Item& made = items_.emplace_back(item);
+      made.convex = &part.convex;
+      made.pose = {item.pose.place(part.in_solid.centre), item.pose.axes * part.in_solid.axes};
     }
   }
-  boxes_[node] = all;
-  if (last - first <= leaf) return;
-  std::size_t longest = 0;
-  for (std::size_t axis = 1; axis < V::size(); ++axis)
-    if (centres.upper[axis] - centres.lower[axis] > centres.upper[longest] - centres.lower[longest]) longest = axis;
-  const std::size_t middle = first + (last - first + 1) / 2;
-  const auto at = [&](std::size_t k) { return items_.begin() + static_cast<std::ptrdiff_t>(k); };
-  std::nth_element(at(first), at(middle), at(last), [&](const Item& a, const Item& b) {
-    return std::pair(a.x[longest], a.number) < std::pair(b.x[longest], b.number);
-  });
-  build(2 * node + 1, first, middle);
-  build(2 * node + 2, middle, last);
-}
-
-/// Calls visit(item) for the items of all boxes that enter(box) does not exclude. enter(box) gives the distance at
-/// which the box begins, infinity to exclude it. The nearer half of a box comes first; the other half is tested again
-/// after that, since a hit may have shortened the search.
-template <class Real, int Dim>
-template <class Enter, class Visit>
-void Queries<Real, Dim>::walk(Enter&& enter, Visit&& visit, std::size_t node, std::size_t first,
-                              std::size_t last) const {
-  if (last - first <= leaf) {
-    for (std::size_t k = first; k < last; ++k) visit(items_[k]);
-    return;
-  }
-  constexpr Real never = std::numeric_limits<Real>::infinity();
-  const std::size_t middle = first + (last - first + 1) / 2, lower = 2 * node + 1, upper = 2 * node + 2;
-  const Real to_lower = enter(boxes_[lower]), to_upper = enter(boxes_[upper]);
-  const auto go_lower = [&] {
-    if (enter(boxes_[lower]) < never) walk(enter, visit, lower, first, middle);
-  };
-  const auto go_upper = [&] {
-    if (enter(boxes_[upper]) < never) walk(enter, visit, upper, middle, last);
-  };
-  if (to_upper < to_lower) {
-    go_upper();
-    if (to_lower < never) go_lower();
-  } else {
-    if (to_lower < never) go_lower();
-    if (to_upper < never) go_upper();
-  }
+  std::vector<Bounds<Real, Dim>> bounds;
+  bounds.reserve(items_.size());
+  for (const Item& item : items_) bounds.push_back(bounds_of_item(item));
+  tree_.build(bounds);
 }
 template <class Real, int Dim>
-template <class Enter, class Visit>
-void Queries<Real, Dim>::walk(Enter&& enter, Visit&& visit) const {
-  if (!items_.empty() && enter(boxes_[0]) < std::numeric_limits<Real>::infinity())
-    walk(enter, visit, 0, 0, items_.size());
+Bounds<Real, Dim> Queries<Real, Dim>::bounds_of_item(const Item& item) {
+  if (item.convex) return bounds_of(*item.convex, item.pose);
+  return grown(Bounds<Real, Dim>{item.pose.centre, item.pose.centre}, item.radius);
 }
 
 template <class Real, int Dim>
@@ -184,33 +105,67 @@ void Queries<Real, Dim>::wall_hits(const Ray<Real, Dim>& ray, Take&& take) const
 }
 
 template <class Real, int Dim>
+template <class Take>
+void Queries<Real, Dim>::mesh_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter, Take&& take) const {
+  for (std::uint32_t m = 0; m < meshes_.size(); ++m) {
+    if (!takes(filter, m)) continue;
+    for_each_hit(*meshes_[m].geometry, ray.origin, ray.direction, ray.reach, [&](const FacetHit<Real, Dim>& hit) {
+      return take(RayHit<Real, Dim>{.mesh = m,
+                                    .facet = hit.facet,
+                                    .distance = hit.distance,
+                                    .point = ray.origin + ray.direction * hit.distance,
+                                    .normal = hit.normal});
+    });
+  }
+}
+
+template <class Real, int Dim>
 Real Queries<Real, Dim>::distance_to(const Item& item, const V& point) {
-  if (!item.solid) return length(V(item.x - point)) - item.radius;
-  Real least = std::numeric_limits<Real>::infinity();
-  const V local = item.pose.local(point);
-  for (const SolidPart<Real, Dim>& part : item.solid->parts)
-    least = std::min(least, signed_distance(part.convex, part.in_solid.local(local)));
-  return least;
+  if (!item.convex) return length(V(item.pose.centre - point)) - item.radius;
+  return signed_distance(*item.convex, item.pose.local(point));
 }
 
 template <class Real, int Dim>
 RayHit<Real, Dim> Queries<Real, Dim>::hit_of(const Ray<Real, Dim>& ray, const Item& item) {
-  RayHit<Real, Dim> hit{.body = item.body, .distance = distance_along(ray, item.x, item.radius)};
-  if (item.solid && is_number(hit.distance)) {
-    hit.distance = std::numeric_limits<Real>::infinity();
-    for (const SolidPart<Real, Dim>& part : item.solid->parts) {
-      const Pose<Real, Dim> pose{item.pose.place(part.in_solid.centre), item.pose.axes * part.in_solid.axes};
-      const auto entry = ray_entry(part.convex, pose.local(ray.origin), pose.local_direction(ray.direction), ray.reach);
-      if (entry && entry->distance < hit.distance)
-        hit.distance = entry->distance, hit.normal = pose.axes * entry->normal;
-    }
+  RayHit<Real, Dim> hit{.body = item.body, .distance = std::numeric_limits<Real>::infinity()};
+  V out;
+  if (!item.convex) {
+    hit.distance = distance_along(ray, item.pose.centre, item.radius);
+    out = ray.origin + ray.direction * hit.distance - item.pose.centre;
+  } else if (const auto entry = ray_entry(*item.convex, item.pose.local(ray.origin),
+                                          item.pose.local_direction(ray.direction), ray.reach)) {
+    hit.distance = entry->distance;
+    out = item.pose.axes * entry->normal;
   }
   if (!is_number(hit.distance)) return hit;
   hit.point = ray.origin + ray.direction * hit.distance;
-  const V out = item.solid ? hit.normal : V(hit.point - item.x);
   const Real size = length(out);
   hit.normal = hit.distance > Real(0) && size > Real(0) ? out * (1 / size) : V(-ray.direction);
   return hit;
+}
+
+template <class Real, int Dim>
+std::optional<RayHit<Real, Dim>> Queries<Real, Dim>::nearest_hit(Ray<Real, Dim> ray, const QueryFilter& filter) const {
+  std::optional<RayHit<Real, Dim>> nearest;  // ray.reach is its distance
+  std::uint32_t number = 0;                  // of its body
+  const BoxSweep<Real, Dim> sweep{.begin = {ray.origin, ray.origin}, .way = ray.direction, .end = ray.reach};
+  tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
+    const Item& item = items_[k];
+    if (!takes(filter, item)) return ray.reach;
+    const RayHit<Real, Dim> hit = hit_of(ray, item);
+    if (!is_number(hit.distance) || (nearest && hit.distance == ray.reach && item.number >= number)) return ray.reach;
+    nearest = hit, number = item.number;
+    return ray.reach = hit.distance;
+  });
+  const auto take = [&](const RayHit<Real, Dim>& hit) {
+    const auto order = [](const RayHit<Real, Dim>& of) { return std::tuple(of.distance, of.wall, of.mesh, of.facet); };
+    const bool is_nearer = nearest && (hit.distance < nearest->distance || nearest->is_mesh());
+    if (!nearest || (is_nearer && order(hit) < order(*nearest))) nearest = hit, ray.reach = hit.distance;
+    return ray.reach;
+  };
+  if (filter.walls) wall_hits(ray, take);
+  mesh_hits(ray, filter, take);
+  return nearest;
 }
 
 template <class Real, int Dim>
@@ -218,23 +173,28 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<R
                                                                      const QueryFilter& filter) const {
   Ray<Real, Dim> ray = asked;
   if (Status fault = prepare(ray); !fault) return fault;
-  const Item* nearest = nullptr;
   std::vector<RayHit<Real, Dim>> hits;
-  Ray<Real, Dim> left = ray;  // ends at the nearest hit so far
-  walk([&](const Box& box) { return entry(left, box.lower, box.upper); },
-       [&](const Item& item) {
-         if (!takes(filter, item.group)) return;
-         const RayHit<Real, Dim> hit = hit_of(left, item);
-         if (!is_number(hit.distance)) return;
-         if (nearest && hit.distance == left.reach && item.number > nearest->number) return;
-         nearest = &item;
-         hits = {hit};
-         left.reach = hit.distance;
-       });
-  if (filter.walls)
-    wall_hits(left, [&](const RayHit<Real, Dim>& hit) {
-      if (hits.empty() || hit.distance < hits[0].distance) hits = {hit};
+  if (const auto hit = nearest_hit(ray, filter)) hits.push_back(*hit);
+  return hits;
+}
+
+template <class Real, int Dim>
+Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hits(std::span<const Ray<Real, Dim>> rays,
+                                                                      const QueryFilter& filter, int threads) const {
+  std::vector<Ray<Real, Dim>> prepared(rays.begin(), rays.end());
+  for (std::size_t i = 0; i < prepared.size(); ++i)
+    if (Status fault = prepare(prepared[i]); !fault)
+      return invalid_input("ray " + std::to_string(i) + ": " + fault.message);
+  if (threads < 1) return invalid_input("the number of threads must be 1 or more");
+  std::vector<RayHit<Real, Dim>> hits(rays.size(), {.distance = std::numeric_limits<Real>::infinity()});
+  ThreadTeam team(threads);
+  team.run([&] {
+    constexpr std::size_t block = 256;
+    team.for_each(0, rays.size(), block, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        if (const auto hit = nearest_hit(prepared[i], filter)) hits[i] = *hit;
     });
+  });
   return hits;
 }
 
@@ -244,46 +204,64 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Re
   Ray<Real, Dim> ray = asked;
   if (Status fault = prepare(ray); !fault) return fault;
   std::vector<std::pair<std::uint32_t, RayHit<Real, Dim>>> found;
-  walk([&](const Box& box) { return entry(ray, box.lower, box.upper); },
-       [&](const Item& item) {
-         if (!takes(filter, item.group)) return;
-         const RayHit<Real, Dim> hit = hit_of(ray, item);
-         if (is_number(hit.distance)) found.emplace_back(item.number, hit);
-       });
+  const BoxSweep<Real, Dim> sweep{.begin = {ray.origin, ray.origin}, .way = ray.direction, .end = ray.reach};
+  tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
+    if (!takes(filter, items_[k])) return ray.reach;
+    const RayHit<Real, Dim> hit = hit_of(ray, items_[k]);
+    if (is_number(hit.distance)) found.emplace_back(items_[k].number, hit);
+    return ray.reach;
+  });
+  // Of several parts of a body the first one counts.
+  std::ranges::sort(found, {}, [](const auto& at) { return std::pair(at.first, at.second.distance); });
+  const auto later = std::ranges::unique(found, {}, &std::pair<std::uint32_t, RayHit<Real, Dim>>::first);
+  found.erase(later.begin(), later.end());
   std::ranges::sort(found, {}, [](const auto& at) { return std::pair(at.second.distance, at.first); });
-  std::vector<RayHit<Real, Dim>> bodies, walls;
+  std::vector<RayHit<Real, Dim>> bodies, others;
   for (const auto& [number, hit] : found) bodies.push_back(hit);
-  if (filter.walls) wall_hits(ray, [&](const RayHit<Real, Dim>& hit) { walls.push_back(hit); });
-  std::ranges::sort(walls, {}, [](const auto& hit) { return std::pair(hit.distance, hit.wall); });
+  if (filter.walls) wall_hits(ray, [&](const RayHit<Real, Dim>& hit) { others.push_back(hit); });
+  mesh_hits(ray, filter, [&](const RayHit<Real, Dim>& hit) { return others.push_back(hit), ray.reach; });
+  std::ranges::sort(others, {},
+                    [](const auto& hit) { return std::tuple(hit.distance, hit.wall, hit.mesh, hit.facet); });
   std::vector<RayHit<Real, Dim>> hits;
-  std::ranges::merge(bodies, walls, std::back_inserter(hits), {}, &RayHit<Real, Dim>::distance,
+  std::ranges::merge(bodies, others, std::back_inserter(hits), {}, &RayHit<Real, Dim>::distance,
                      &RayHit<Real, Dim>::distance);
   return hits;
 }
 
+/// The bodies of the parts found, in the order of the world.
+template <class Real, int Dim>
+Overlap Queries<Real, Dim>::overlap_of(std::vector<const Item*>& found) const {
+  std::ranges::sort(found, {}, &Item::number);
+  const auto later = std::ranges::unique(found, {}, &Item::number);
+  found.erase(later.begin(), later.end());
+  Overlap overlap;
+  for (const Item* const item : found) overlap.bodies.push_back(item->body);
+  return overlap;
+}
+
 namespace {
 
-/// Whether a solid has a point in common with a box with its faces along the axes.
 template <class Real, int Dim>
-bool touches_box(const Solid<Real, Dim>& solid, const Pose<Real, Dim>& pose, const Vector<Real, Dim>& lower,
-                 const Vector<Real, Dim>& upper) {
+Polytope<Real, Dim> corners_of_box(const Vector<Real, Dim>& lower, const Vector<Real, Dim>& upper) {
   Polytope<Real, Dim> box;
   for (unsigned k = 0; k < 1u << Dim; ++k) {
     Vector<Real, Dim>& corner = box.corners.emplace_back();
     for (std::size_t axis = 0; axis < Dim; ++axis) corner[axis] = (k >> axis & 1u) != 0 ? upper[axis] : lower[axis];
   }
-  return std::ranges::any_of(solid.parts, [&](const SolidPart<Real, Dim>& part) {
-    const Pose<Real, Dim> of_part{pose.place(part.in_solid.centre), pose.axes * part.in_solid.axes};
-    return closest_points(box, part.convex.core, of_part).distance <= part.convex.rounding;
-  });
+  return box;
 }
-
-template <class Found>
-std::vector<BodyHandle> in_order(Found& found) {
-  std::ranges::sort(found, {}, [](const auto* item) { return item->number; });
-  std::vector<BodyHandle> bodies;
-  for (const auto* item : found) bodies.push_back(item->body);
-  return bodies;
+/// Whether a mesh has a facet that is not farther than `reach` from a polytope.
+template <class Real, int Dim>
+bool is_near(const StaticMesh<Real, Dim>& mesh, const Polytope<Real, Dim>& shape, const Bounds<Real, Dim>& bounds,
+             const Real& reach) {
+  bool found = false;
+  Polytope<Real, Dim> facet;
+  mesh.for_each_overlap(grown(bounds, reach), [&](std::uint32_t number) {
+    const auto corners = mesh.corners(number);
+    facet.corners.assign(corners.begin(), corners.end());
+    found = found || closest_points(shape, facet, Pose<Real, Dim>{}).distance <= reach;
+  });
+  return found;
 }
 
 }  // namespace
@@ -293,20 +271,19 @@ Result<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radiu
   if (!is_finite(centre) || !is_number(radius) || radius < Real(0))
     return invalid_input("centre and radius must be finite, the radius 0 or more");
   std::vector<const Item*> found;
-  walk(
-      [&](const Box& box) {
-        return distance_to_box(centre, box.lower, box.upper) > radius * (1 + 8 * std::numeric_limits<Real>::epsilon())
-                   ? std::numeric_limits<Real>::infinity()
-                   : Real(0);
-      },
-      [&](const Item& item) {
-        if (takes(filter, item.group) && distance_to(item, centre) <= radius) found.push_back(&item);
-      });
-  Overlap overlap{in_order(found), {}};
+  tree_.for_each_near(centre, radius, [&](std::uint32_t k) {
+    if (takes(filter, items_[k]) && distance_to(items_[k], centre) <= radius) found.push_back(&items_[k]);
+    return radius;
+  });
+  Overlap overlap = overlap_of(found);
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
     const Wall<Real, Dim> wall = facing(walls_[w], centre);
     if (dot(wall.normal, centre) - wall.offset <= radius) overlap.walls.push_back(w);
   }
+  const Polytope<Real, Dim> point{.corners = {centre}};
+  for (std::uint32_t m = 0; m < meshes_.size(); ++m)
+    if (takes(filter, m) && is_near(*meshes_[m].geometry, point, Bounds<Real, Dim>{centre, centre}, radius))
+      overlap.meshes.push_back(m);
   return overlap;
 }
 
@@ -315,19 +292,18 @@ Result<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const
   if (!is_finite(lower) || !is_finite(upper)) return invalid_input("the corners of a box must be finite");
   for (std::size_t axis = 0; axis < V::size(); ++axis)
     if (lower[axis] > upper[axis]) return invalid_input("the lower corner of a box must not be above the upper one");
+  const Bounds<Real, Dim> bounds{lower, upper};
+  const Polytope<Real, Dim> box = corners_of_box(lower, upper);
   std::vector<const Item*> found;
-  walk(
-      [&](const Box& box) {
-        for (std::size_t axis = 0; axis < V::size(); ++axis)
-          if (box.lower[axis] > upper[axis] || box.upper[axis] < lower[axis])
-            return std::numeric_limits<Real>::infinity();
-        return Real(0);
-      },
-      [&](const Item& item) {
-        if (!takes(filter, item.group) || distance_to_box(item.x, lower, upper) > item.radius) return;
-        if (!item.solid || touches_box(*item.solid, item.pose, lower, upper)) found.push_back(&item);
-      });
-  Overlap overlap{in_order(found), {}};
+  tree_.for_each_overlap(bounds, [&](std::uint32_t k) {
+    const Item& item = items_[k];
+    if (!takes(filter, item)) return;
+    const bool is_found = item.convex
+                              ? closest_points(box, item.convex->core, item.pose).distance <= item.convex->rounding
+                              : distance(item.pose.centre, bounds) <= item.radius;
+    if (is_found) found.push_back(&item);
+  });
+  Overlap overlap = overlap_of(found);
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
     const Wall<Real, Dim> wall = facing(walls_[w], V((lower + upper) * Real(0.5)));
     Real deepest(0);  // the corner that the wall's normal points away from
@@ -335,6 +311,8 @@ Result<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const
       deepest += wall.normal[axis] * (wall.normal[axis] > Real(0) ? lower[axis] : upper[axis]);
     if (deepest <= wall.offset) overlap.walls.push_back(w);
   }
+  for (std::uint32_t m = 0; m < meshes_.size(); ++m)
+    if (takes(filter, m) && is_near(*meshes_[m].geometry, box, bounds, Real(0))) overlap.meshes.push_back(m);
   return overlap;
 }
 
@@ -342,35 +320,28 @@ template <class Real, int Dim>
 Result<std::vector<Neighbour<Real>>> Queries<Real, Dim>::nearest(const V& point, std::size_t count,
                                                                  const QueryFilter& filter) const {
   if (!is_finite(point)) return invalid_input("the point must be finite");
-  constexpr Real never = std::numeric_limits<Real>::infinity();
   using Found = std::tuple<Real, std::uint32_t, BodyHandle>;
   const auto nearer = [](const Found& a, const Found& b) {
     return std::pair(std::get<0>(a), std::get<1>(a)) < std::pair(std::get<0>(b), std::get<1>(b));
   };
-  std::vector<Found> found;  // a heap, the farthest on top
-  count = std::min(count, items_.size());
+  std::set<Found, decltype(nearer)> found(nearer);  // each body once
+  const auto take = [&](const Found& one, bool has_parts) {
+    if (has_parts) {
+      const auto same = std::ranges::find(found, std::get<1>(one), [](const Found& at) { return std::get<1>(at); });
+      if (same != found.end() && !nearer(one, *same)) return;
+      if (same != found.end()) found.erase(same);
+    }
+    found.insert(one);
+    if (found.size() > count) found.erase(std::prev(found.end()));
+  };
+  constexpr Real endless = std::numeric_limits<Real>::infinity();
   if (count > 0)
-    walk(
-        [&](const Box& box) {
-          const Real distance = distance_to_box(point, box.lower, box.upper);
-          const bool is_full = found.size() == count;
-          return is_full && distance > Real(0) &&
-                         distance > std::get<0>(found.front()) * (1 + 8 * std::numeric_limits<Real>::epsilon())
-                     ? never
-                     : distance;
-        },
-        [&](const Item& item) {
-          if (!takes(filter, item.group)) return;
-          const Found one{distance_to(item, point), item.number, item.body};
-          if (found.size() == count) {
-            if (!nearer(one, found.front())) return;
-            std::ranges::pop_heap(found, nearer);
-            found.pop_back();
-          }
-          found.push_back(one);
-          std::ranges::push_heap(found, nearer);
-        });
-  std::ranges::sort_heap(found, nearer);
+    tree_.for_each_near(point, endless, [&](std::uint32_t k) {
+      const Item& item = items_[k];
+      const bool has_parts = item.solid && item.solid->parts.size() > 1;
+      if (takes(filter, item)) take({distance_to(item, point), item.number, item.body}, has_parts);
+      return found.size() == count ? std::max(std::get<0>(*std::prev(found.end())), Real(0)) : endless;
+    });
   std::vector<Neighbour<Real>> neighbours;
   for (const auto& [distance, number, body] : found) neighbours.push_back({body, distance});
   return neighbours;

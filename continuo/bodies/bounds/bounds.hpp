@@ -84,4 +84,13 @@ template <class Real, int Dim>
   }
 }
 
+/// The distance of a point to the nearest point of bounds that are not empty; 0 inside.
+template <class Real, int Dim>
+[[nodiscard]] Real distance(const Vector<Real, Dim>& x, const Bounds<Real, Dim>& a) {
+  Vector<Real, Dim> out;
+  for (std::size_t axis = 0; axis < x.size(); ++axis)
+    out[axis] = std::max({Real(a.lower[axis] - x[axis]), Real(x[axis] - a.upper[axis]), Real(0)});
+  return length(out);
+}
+
 }  // namespace continuo

@@ -69,6 +69,10 @@ class BoundsTree {
   /// shorten its way, below 0 to end the search. Of two nodes the one that is entered first is searched first.
   template <class Visit>
   void for_each_on_way(const BoxSweep<Real, Dim>& sweep, Visit&& visit) const;
+  /// Calls visit(leaf) for all leaves whose bounds are within a distance of a point, at first `reach`. The visitor
+  /// returns the distance up to which the search goes on. Of two nodes the nearer one is searched first.
+  template <class Visit>
+  void for_each_near(const Vector<Real, Dim>& point, Real reach, Visit&& visit) const;
 
  private:
   static constexpr std::size_t deepest = 63;
@@ -281,11 +285,42 @@ void BoundsTree<Real, Dim>::for_each_on_way(const BoxSweep<Real, Dim>& sweep, Vi
       if (end < Real(0)) return;
       continue;
     }
-    const Entered left{node.children, slabs.entry(nodes_[node.children].box, end)};
-    const Entered right{node.children + 1, slabs.entry(nodes_[node.children + 1].box, end)};
-    const bool is_left_first = left.fraction <= right.fraction;
-    push(is_left_first ? right : left);
-    push(is_left_first ? left : right);
+    std::array<Entered, 2> children;
+    for (std::uint32_t k = 0; k < 2; ++k)
+      children[k] = {node.children + k, slabs.entry(nodes_[node.children + k].box, end)};
+    const std::size_t first = children[0].fraction <= children[1].fraction ? 0 : 1;
+    push(children[1 - first]);
+    push(children[first]);
+  }
+}
+
+template <class Real, int Dim>
+template <class Visit>
+void BoundsTree<Real, Dim>::for_each_near(const Vector<Real, Dim>& point, Real reach, Visit&& visit) const {
+  struct Near {
+    std::uint32_t node;
+    Real distance;
+  };
+  // To rounding: what may be as near is searched.
+  const auto is_beyond = [&](const Real& distance) {
+    return distance > reach + (8 * std::numeric_limits<Real>::epsilon() * reach + std::numeric_limits<Real>::min());
+  };
+  const auto near = [&](std::uint32_t node) -> Near { return {node, distance(point, nodes_[node].box)}; };
+  std::array<Near, deepest + 2> stack;
+  std::size_t count = 0;
+  if (!nodes_.empty() && !is_empty(nodes_[0].box)) stack[count++] = near(0);
+  while (count > 0) {
+    const Near at = stack[--count];
+    if (is_beyond(at.distance)) continue;
+    const Node& node = nodes_[at.node];
+    if (node.is_leaf()) {
+      if (!is_empty(node.box)) reach = visit(node.leaf);
+      continue;
+    }
+    const Near left = near(node.children), right = near(node.children + 1);
+    const bool is_left_first = left.distance <= right.distance;
+    stack[count++] = is_left_first ? right : left;
+    stack[count++] = is_left_first ? left : right;
   }
 }
 

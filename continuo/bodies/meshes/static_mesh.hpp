@@ -264,7 +264,9 @@ void StaticMesh<Real, Dim>::for_each_on_way(const BoxSweep<Real, Dim>& sweep, Vi
   Real end = sweep.end;
   tree_.for_each_on_way(sweep, [&](std::uint32_t number, const Real&) {
     for_each_facet(block(number), [&](std::uint32_t facet) {
-      if (end < Real(0) || !(slabs.entry(bounds_of<Real, Dim>(corners(facet)), end) <= end)) return;
+      if (end < Real(0)) return;
+      const Real entry = slabs.entry(bounds_of<Real, Dim>(corners(facet)), end);
+      if (entry == std::numeric_limits<Real>::infinity()) return;
       end = visit(facet);
     });
     return end;
