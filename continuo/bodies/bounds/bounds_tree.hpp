@@ -285,12 +285,11 @@ void BoundsTree<Real, Dim>::for_each_on_way(const BoxSweep<Real, Dim>& sweep, Vi
       if (end < Real(0)) return;
       continue;
     }
-    std::array<Entered, 2> children;
-    for (std::uint32_t k = 0; k < 2; ++k)
-      children[k] = {node.children + k, slabs.entry(nodes_[node.children + k].box, end)};
-    const std::size_t first = children[0].fraction <= children[1].fraction ? 0 : 1;
-    push(children[1 - first]);
-    push(children[first]);
+    const Entered left{node.children, slabs.entry(nodes_[node.children].box, end)};
+    const Entered right{node.children + 1, slabs.entry(nodes_[node.children + 1].box, end)};
+    const bool is_left_first = left.fraction <= right.fraction;
+    push(is_left_first ? right : left);
+    push(is_left_first ? left : right);
   }
 }
 
