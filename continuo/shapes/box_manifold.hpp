@@ -124,8 +124,7 @@ template <class Real, int Dim>
     if (of_edges.separation > margin) return {};
     if (of_edges.separation > axis.separation + bias) axis = of_edges, is_of_edges = true;
   }
-  CommonPoints<Real, Dim> common;
-  find_common_points_along(a.core, b.core, boxes.b_in_a, axis.normal, common);
+  CommonPoints<Real, Dim> common = common_points_along(a.core, b.core, boxes.b_in_a, axis.normal);
   const bool is_apart = axis.separation > Real(1e-5) * size;
   // A point of a face with a corner above it at the greatest distance along an axis: nothing is closer.
   if (has_point_within(common, axis.separation + (is_apart ? Real(1e-5) : Real(1e-2)) * size))

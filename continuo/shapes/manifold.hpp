@@ -64,16 +64,15 @@ template <class Real, int Dim>
   return {perpendicular(along), Real(0), (a.corners.back() + a.corners.front()) * Real(0.5)};
 }
 
-/// Finds the common points of the features of a and b that face each other along the normal.
+/// The common points of the features of a and b that face each other along the normal.
 template <class Real, int Dim>
-void find_common_points_along(const Polytope<Real, Dim>& a, const Polytope<Real, Dim>& b, const Pose<Real, Dim>& b_in_a,
-                              const Vector<Real, Dim>& normal, CommonPoints<Real, Dim>& common) {
-  common.clear();
-  Feature<Real, Dim> of_a, of_b;
-  find_facing_feature(a, normal, of_a);
-  find_facing_feature(b, b_in_a.local_direction(-normal), of_b);
+[[nodiscard]] CommonPoints<Real, Dim> common_points_along(const Polytope<Real, Dim>& a, const Polytope<Real, Dim>& b,
+                                                          const Pose<Real, Dim>& b_in_a,
+                                                          const Vector<Real, Dim>& normal) {
+  const Feature<Real, Dim> of_a = facing_feature(a, normal);
+  Feature<Real, Dim> of_b = facing_feature(b, b_in_a.local_direction(-normal));
   place(of_b, b_in_a);
-  find_common_points(of_a, of_b, normal, common);
+  return common_points(of_a, of_b, normal);
 }
 
 /// The manifold with these points of the cores, of which those within the margin and so many as are needed are kept.
@@ -106,17 +105,16 @@ template <class Real, int Dim>
 [[nodiscard]] Manifold<Real, Dim> manifold(const Convex<Real, Dim>& a, const Convex<Real, Dim>& b,
                                            const Pose<Real, Dim>& b_in_a, const Real& margin) {
   const Real roundings = a.rounding + b.rounding, size = a.reach < b.reach ? a.reach : b.reach;
-  CommonPoints<Real, Dim> common;
   const ClosestPoints<Real, Dim> closest = closest_points(a.core, b.core, b_in_a);
   if (closest.distance > roundings + margin) return {};
   const bool is_apart = closest.distance > Real(1e-5) * size;
   SeparatingAxis<Real, Dim> axis{closest.normal, closest.distance, closest.on_a};
   if (!is_apart) axis = least_overlap(a.core, b.core, b_in_a, Real(1e-3) * size);
-  find_common_points_along(a.core, b.core, b_in_a, axis.normal, common);
+  CommonPoints<Real, Dim> common = common_points_along(a.core, b.core, b_in_a, axis.normal);
   // Where a corner or crossing edges are closest, their features need not have points above each other.
   if (!is_apart && !has_point_within(common, axis.separation + Real(1e-2) * size)) {
     axis = least_overlap(a.core, b.core, b_in_a, Real(0));
-    find_common_points_along(a.core, b.core, b_in_a, axis.normal, common);
+    common = common_points_along(a.core, b.core, b_in_a, axis.normal);
   }
   if (!has_point_within(common, axis.separation + Real(1e-2) * size))
     common.add({axis.on_a, axis.separation, CommonPoint<Real, Dim>::closest});

@@ -54,13 +54,20 @@ class StoppingTimes {
   StoppingTimes(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
                 std::span<const PartContact<Real, Dim>> contacts, const Real& step,
                 std::span<const RigidBody<Real, Dim>> bodies)
-      : world_(world), pairs_(pairs), contacts_(contacts), step_(step), bodies_(bodies), until_(world.size(), step) {}
+      : world_(world),
+        pairs_(pairs),
+        contacts_(contacts),
+        step_(step),
+        bodies_(bodies),
+        until_(world.size(), step),
+        is_fast_(pairs.parts().size()) {
+    for (std::size_t i = 0; i < is_fast_.size(); ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
+  }
 
   [[nodiscard]] const std::vector<Real>& times() const { return until_; }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
-    const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return !body.is_fixed() && way(part) > part.inner_radius / 2 && !world_.traits(part.body).is_sensor;
+    return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())];
   }
   /// Stops at the first contact of a part with what it does not touch yet.
   void find_first_contact(const RigidPart<Real, Dim>& part) {
@@ -85,7 +92,6 @@ class StoppingTimes {
   /// other one.
   void find_depth(const PartContact<Real, Dim>& found) {
     const auto parts = pairs_.parts();
-    if (found.parts.b >= pairs_.first_mesh()) return;  // found with its facets, which have borders
     const bool is_wall = found.parts.b >= parts.size();
     const RigidPart<Real, Dim>& a = parts[found.parts.a];
     const bool is_a_fast = is_fast(a), is_b_fast = !is_wall && is_fast(parts[found.parts.b]);
@@ -121,12 +127,16 @@ class StoppingTimes {
     const auto i = static_cast<std::uint32_t>(&a - first), j = static_cast<std::uint32_t>(&b - first);
     const PartPair pair{std::min(i, j), std::max(i, j)};
     const auto at = std::ranges::lower_bound(contacts_, pair, {}, &PartContact<Real, Dim>::parts);
-    return at != contacts_.end() && at->parts == pair;
+    return at != contacts_.end() && at->parts == pair && at->contact.size > 0;
   }
   [[nodiscard]] Real way(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return length(Vector<Real, Dim>(body.x - body.x_before)) +
            length(spin_between(body.orientation_before, body.orientation, step_)) * step_ * part.convex->reach;
+  }
+  [[nodiscard]] bool moves_far(const RigidPart<Real, Dim>& part) const {
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    return !body.is_fixed() && way(part) > part.inner_radius / 2 && !world_.traits(part.body).is_sensor;
   }
   void stop(std::uint32_t body, const Real& time) { until_[body] = std::min(until_[body], time); }
 
@@ -136,6 +146,7 @@ class StoppingTimes {
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
   std::vector<Real> until_;
+  std::vector<bool> is_fast_;  // of each part
 };
 
 /// Stops fast bodies. Returns how many. `bodies` have the world's bodies first.
@@ -146,7 +157,8 @@ std::size_t stop_fast_bodies(const World<Real, Dim>& world, const RigidPairs<Rea
   StoppingTimes<Real, Dim> times(world, pairs, contacts, step, bodies);
   for (const RigidPart<Real, Dim>& part : pairs.parts())
     if (times.is_fast(part)) times.find_first_contact(part);
-  for (const PartContact<Real, Dim>& found : contacts) times.find_depth(found);
+  for (const PartContact<Real, Dim>& found : contacts)
+    if (found.contact.size > 0) times.find_depth(found);
   std::size_t stopped = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
     const Real until = times.times()[i];

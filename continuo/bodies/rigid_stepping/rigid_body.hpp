@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <continuo/shapes/convex.hpp>
 #include <continuo/shapes/matrix.hpp>
@@ -52,6 +53,18 @@ template <class Real>
 [[nodiscard]] Matrix<Real, 3> inverse(const Matrix<Real, 3>& a) {
   const Vector<Real, 3> x = moment(a[1], a[2]), y = moment(a[2], a[0]), z = moment(a[0], a[1]);
   return transposed(Matrix<Real, 3>{{{x, y, z}}}) * (1 / dot(a[0], x));
+}
+
+/// Whether a moment of inertia is the same about all axes, up to rounding: such a body turns at a constant spin.
+template <class Real>
+[[nodiscard]] bool is_isotropic(const Matrix<Real, 1>&) {
+  return true;
+}
+template <class Real>
+[[nodiscard]] bool is_isotropic(const Matrix<Real, 3>& inertia) {
+  const Real most = 16 * std::numeric_limits<Real>::epsilon() * inertia[0][0];
+  return std::abs(inertia[1][1] - inertia[0][0]) <= most && std::abs(inertia[2][2] - inertia[0][0]) <= most &&
+         std::abs(inertia[0][1]) <= most && std::abs(inertia[1][2]) <= most && std::abs(inertia[2][0]) <= most;
 }
 
 /// The spin of a body of space after h without torques, by the midpoint rule: its angular momentum L stays the same to

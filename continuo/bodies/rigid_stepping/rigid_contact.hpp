@@ -18,10 +18,12 @@ template <class Real>
 [[nodiscard]] std::array<Vector<Real, 2>, 1> directions_across(const Vector<Real, 2>& normal) {
   return {perpendicular(normal)};
 }
+/// T. Duff et al., "Building an orthonormal basis, revisited", JCGT 6 (2017), 1-8.
 template <class Real>
-[[nodiscard]] std::array<Vector<Real, 3>, 2> directions_across(const Vector<Real, 3>& normal) {
-  const Vector<Real, 3> across = perpendicular(normal);
-  return {across, moment(normal, across)};
+[[nodiscard]] std::array<Vector<Real, 3>, 2> directions_across(const Vector<Real, 3>& n) {
+  const Real sign = std::copysign(Real(1), n[2]), p = -1 / (sign + n[2]), q = n[0] * n[1] * p;
+  const Vector<Real, 3> across{{1 + sign * n[0] * n[0] * p, sign * q, -sign * n[0]}};
+  return {across, moment(n, across)};
 }
 
 template <class Real, int Dim>
@@ -29,6 +31,7 @@ struct RigidContactPoint {
   Vector<Real, Dim> arm_a{}, arm_b{};      // from the centres, in the world, when the step began
   Vector<Real, Dim> local_a{}, local_b{};  // the same, in the frames of the bodies
   Real separation{};                       // when the step began
+  Real separation_when_found{};            // where local_a and local_b were the same point
   Real approach{};                         // normal velocity then
   Real impulse{};                          // along the normal, of the last substep
   Vector<Real, Dim> friction{};            // impulse across it
@@ -39,7 +42,10 @@ struct RigidContactPoint {
 template <class Real, int Dim>
 struct RigidContact {
   static constexpr std::size_t most_points = Manifold<Real, Dim>::most_points;
-  Vector<Real, Dim> normal{};  // from a to b, in the world
+  Vector<Real, Dim> normal{};       // from a to b, in the world
+  Vector<Real, Dim> normal_in_a{};  // the same, in the frame of a
+  Pose<Real, Dim> found_at{};       // of b in the frame of a, when the points were found
+  Real margin{};                    // then
   std::array<RigidContactPoint<Real, Dim>, most_points> points{};
   std::size_t size = 0;  // of the points
   Real friction{}, restitution{};
@@ -52,25 +58,51 @@ struct RigidContact {
 /// points of the contact before, if there was one, that have the same features.
 template <class Real, int Dim>
 [[nodiscard]] RigidContact<Real, Dim> contact_of(const Manifold<Real, Dim>& manifold, const Pose<Real, Dim>& of_a,
-                                                 const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b,
-                                                 const RigidContact<Real, Dim>* before) {
+                                                 const Real& margin, const RigidBody<Real, Dim>& a,
+                                                 const RigidBody<Real, Dim>& b, const RigidContact<Real, Dim>* before) {
   RigidContact<Real, Dim> contact;
   contact.size = manifold.size;
+  contact.margin = margin;
+  if (manifold.size == 0) return contact;
   contact.normal = of_a.axes * manifold.normal;
+  contact.normal_in_a = a.pose().local_direction(contact.normal);
+  contact.found_at = relative(a.pose(), b.pose());
   for (std::size_t i = 0; i < manifold.size; ++i) {
     const ManifoldPoint<Real, Dim>& found = manifold.points[i];
     RigidContactPoint<Real, Dim>& point = contact.points[i];
     point.feature = found.feature;
-    if (before)
-      for (const auto& old : before->all())
-        if (old.feature == found.feature) point.impulse = old.impulse, point.friction = old.friction;
+    for (const auto& old : before ? before->all() : std::span<const RigidContactPoint<Real, Dim>>())
+      if (old.feature == found.feature) point.impulse = old.impulse, point.friction = old.friction;
     const Vector<Real, Dim> x = of_a.place(found.position);
     point.arm_a = x - a.x, point.arm_b = x - b.x;
     point.local_a = a.pose().local(x), point.local_b = b.pose().local(x);
-    point.separation = found.separation;
+    point.separation = point.separation_when_found = found.separation;
     point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
   }
   return contact;
+}
+
+/// Takes a contact along with two bodies that have hardly moved against each other since its points were found: the
+/// normal is fixed to a, each point to both bodies, so that the separation is right up to the square of the rotation.
+/// `size` is that of the smaller body. Returns false, and changes nothing, where they have moved, or where points
+/// farther apart count now: then points are to be found anew, which costs ten times as much.
+template <class Real, int Dim>
+[[nodiscard]] bool follow(RigidContact<Real, Dim>& contact, const Real& margin, const Real& size,
+                          const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+  constexpr Real most = Real(1e-3);
+  if (contact.size == 0 || margin > contact.margin + most * size) return false;
+  const Pose<Real, Dim> now = relative(a.pose(), b.pose());
+  if (!(squared(now.centre - contact.found_at.centre) <= most * most * size * size)) return false;
+  for (std::size_t axis = 0; axis < Dim; ++axis)
+    if (!(squared(now.axes[axis] - contact.found_at.axes[axis]) <= most * most)) return false;
+  contact.normal = a.axes * contact.normal_in_a;
+  for (auto& point : contact.all()) {
+    point.arm_a = a.axes * point.local_a, point.arm_b = b.axes * point.local_b;
+    point.separation = point.separation_when_found + dot(contact.normal, (b.x + point.arm_b) - (a.x + point.arm_a));
+    point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
+    point.greatest_impulse = Real(0);
+  }
+  return true;
 }
 
 /// How far apart the surfaces are now at a point of a contact.
@@ -91,18 +123,19 @@ struct ContactHardness {
   Real fastest_push{};  // of undoing overlaps
 };
 
-/// Adds the rows of a contact of bodies a and b, in a block of their own.
+/// Adds the rows of a contact of bodies a and b. Returns their block.
 template <class Real, int Dim>
-void add_rows(const RigidContact<Real, Dim>& contact, std::uint32_t number_a, std::uint32_t number_b,
-              const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b, Constraints<Real, Dim>& all) {
-  RowBlock block{.a = number_a,
-                 .b = number_b,
-                 .first = static_cast<std::uint32_t>(all.rows.size()),
-                 .rows = static_cast<std::uint16_t>(contact.size * Dim),
-                 .points = static_cast<std::uint16_t>(contact.size),
-                 .friction = static_cast<float>(contact.friction)};
+[[nodiscard]] RowBlock add_rows(const RigidContact<Real, Dim>& contact, std::uint32_t number_a, std::uint32_t number_b,
+                                const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b,
+                                std::vector<ConstraintRow<Real, Dim>>& rows) {
+  const RowBlock block{.a = number_a,
+                       .b = number_b,
+                       .first = static_cast<std::uint32_t>(rows.size()),
+                       .rows = static_cast<std::uint16_t>(contact.size * Dim),
+                       .points = static_cast<std::uint16_t>(contact.size),
+                       .friction = static_cast<float>(contact.friction)};
   const auto add = [&](const Vector<Real, Dim>& direction, const RigidContactPoint<Real, Dim>& point) -> auto& {
-    ConstraintRow<Real, Dim>& row = all.rows.emplace_back();
+    ConstraintRow<Real, Dim>& row = rows.emplace_back();
     row.direction = direction;
     row.lever_a = moment(point.arm_a, direction), row.lever_b = moment(point.arm_b, direction);
     set_mass(row, a, b);
@@ -116,7 +149,7 @@ void add_rows(const RigidContact<Real, Dim>& contact, std::uint32_t number_a, st
   const auto across = directions_across(contact.normal);
   for (const auto& point : contact.all())
     for (const Vector<Real, Dim>& direction : across) add(direction, point).impulse = dot(point.friction, direction);
-  all.blocks.push_back(block);
+  return block;
 }
 
 /// Sets the velocities that the rows of a contact ask for, from where the bodies are now.

@@ -13,7 +13,9 @@
 #include <continuo/bodies/bounds/convex_bounds.hpp>
 #include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/shapes/box_manifold.hpp>
 
 namespace continuo {
 
@@ -29,7 +31,10 @@ struct RigidPart {
   std::uint32_t body = 0;
   const Convex<Real, Dim>* convex = nullptr;
   Pose<Real, Dim> in_body{};
-  Real inner_radius{};  // of a ball around the centre that is within the part
+  Real inner_radius{};       // of a ball around the centre that is within the part
+  Vector<Real, Dim> half{};  // the sides, of a box; 0 of others
+
+  [[nodiscard]] bool is_box() const { return half[0] > Real(0); }
 
   [[nodiscard]] Pose<Real, Dim> pose(const RigidBody<Real, Dim>& of) const {
     return {of.x + of.axes * in_body.centre, of.axes * in_body.axes};
@@ -49,13 +54,13 @@ class RigidPairs {
       solids_.push_back(world.shared_solid(i));
       if (const Solid<Real, Dim>* const solid = world.solid(i)) {
         for (const SolidPart<Real, Dim>& part : solid->parts)
-          parts_.push_back({i, &part.convex, part.in_solid, inner_radius(part.convex)});
+          parts_.push_back({i, &part.convex, part.in_solid, inner_radius(part.convex), half_sides(part.convex)});
         continue;
       }
       Convex<Real, Dim>& ball = balls_.emplace_back();
       ball.core.corners = {V{}};
       ball.rounding = ball.reach = world.radius[i];
-      parts_.push_back({i, &ball, {}, ball.rounding});
+      parts_.push_back({i, &ball, {}, ball.rounding, {}});
     }
     meshes_.clear();
     for (const WorldMesh<Real, Dim>& mesh : world.meshes()) meshes_.push_back(mesh.geometry);
@@ -90,9 +95,9 @@ class RigidPairs {
   /// Brings the pairs up to date, where `collide(i, j)` tells whether bodies i and j may. Returns whether parts had
   /// left their rooms.
   template <class Collide>
-  bool update(const World<Real, Dim>& world, std::span<const RigidBody<Real, Dim>> bodies, const Real& step,
-              Collide&& collide) {
-    find_movers(bodies, step);
+  bool update(ThreadTeam& team, const World<Real, Dim>& world, std::span<const RigidBody<Real, Dim>> bodies,
+              const Real& step, Collide&& collide) {
+    find_movers(team, bodies, step);
     if (moved_.empty()) return false;
     tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
     is_new_ = false;
@@ -105,20 +110,21 @@ class RigidPairs {
         if (may_touch(i, j)) pairs_.push_back({i, j});
       });
       for (std::uint32_t i = 0; i < parts_.size(); ++i) add_walls(world, i);
+      std::ranges::sort(pairs_);
     } else {
-      std::vector<bool> has_moved(parts_.size());
-      for (const std::uint32_t i : moved_) has_moved[i] = true;
       std::erase_if(pairs_, [&](const PartPair& pair) {
-        return has_moved[pair.a] || (pair.b < parts_.size() && has_moved[pair.b]);
+        return has_moved_[pair.a] || (pair.b < parts_.size() && has_moved_[pair.b]);
       });
+      const auto kept = static_cast<std::ptrdiff_t>(pairs_.size());
       for (const std::uint32_t i : moved_) {
         tree_.for_each_overlap(rooms_[i], [&](std::uint32_t j) {
-          if (may_touch(i, j) && (!has_moved[j] || i < j)) pairs_.push_back({std::min(i, j), std::max(i, j)});
+          if (may_touch(i, j) && (!has_moved_[j] || i < j)) pairs_.push_back({std::min(i, j), std::max(i, j)});
         });
         add_walls(world, i);
       }
+      std::sort(pairs_.begin() + kept, pairs_.end());
+      std::inplace_merge(pairs_.begin(), pairs_.begin() + kept, pairs_.end());
     }
-    std::ranges::sort(pairs_);
     return true;
   }
 
@@ -128,19 +134,33 @@ class RigidPairs {
     for (const Face<Real, Dim>& face : convex.core.faces) least = std::min(least, face.offset);
     return least + convex.rounding;
   }
-  void find_movers(std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
+  void find_movers(ThreadTeam& team, std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
+    rooms_.resize(parts_.size()), has_moved_.resize(parts_.size());
+    team.for_each(0, parts_.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) has_moved_[i] = leaves_room(i, bodies, step);
+    });
     moved_.clear();
-    rooms_.resize(parts_.size());
-    for (std::uint32_t i = 0; i < parts_.size(); ++i) {
-      const RigidPart<Real, Dim>& part = parts_[i];
-      const RigidBody<Real, Dim>& body = bodies[part.body];
-      if (body.is_fixed() && !is_new_ && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved) continue;
-      const Real margin = contact_margin(part, body, step);
-      const Bounds<Real, Dim> bounds = grown(bounds_of(*part.convex, part.pose(body)), margin);
-      if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) continue;
-      rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * margin);
-      moved_.push_back(i);
-    }
+    for (std::uint32_t i = 0; i < parts_.size(); ++i)
+      if (has_moved_[i]) moved_.push_back(i);
+  }
+  /// Whether a part is not within its room; then it gets another one.
+  [[nodiscard]] bool leaves_room(std::size_t i, std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
+    const RigidPart<Real, Dim>& part = parts_[i];
+    const RigidBody<Real, Dim>& body = bodies[part.body];
+    if (body.is_fixed() && !is_new_ && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved) return false;
+    const Real margin = contact_margin(part, body, step);
+    const Pose<Real, Dim> pose = part.pose(body);
+    const Bounds<Real, Dim> bounds =
+        grown(part.is_box() ? bounds_of_box(part.half, pose) : bounds_of(*part.convex, pose), margin);
+    if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) return false;
+    rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * margin);
+    return true;
+  }
+  [[nodiscard]] static Bounds<Real, Dim> bounds_of_box(const V& half, const Pose<Real, Dim>& pose) {
+    V reach;
+    for (std::size_t i = 0; i < Dim; ++i)
+      for (std::size_t j = 0; j < Dim; ++j) reach[i] += std::abs(pose.axes[j][i]) * half[j];
+    return {pose.centre - reach, pose.centre + reach};
   }
   void add_walls(const World<Real, Dim>& world, std::uint32_t i) {
     const auto walls = world.walls();
@@ -173,6 +193,7 @@ class RigidPairs {
   std::vector<Convex<Real, Dim>> balls_;
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<std::uint32_t> moved_;
+  std::vector<std::uint8_t> has_moved_;  // each part
   std::vector<PartPair> pairs_;
   BoundsTree<Real, Dim> tree_;
   bool is_new_ = true;

@@ -43,6 +43,7 @@ class RigidSleep {
       return length(bodies[i].v) + of_rim > speed;
     };
     for (const PartContact<Real, Dim>& contact : contacts) {
+      if (contact.contact.size == 0) continue;
       if (is_asleep(contact.a) && !is_asleep(contact.b) && is_fast(contact.b)) waking.push_back(group_[contact.a]);
       if (is_asleep(contact.b) && !is_asleep(contact.a) && is_fast(contact.a)) waking.push_back(group_[contact.b]);
     }

@@ -16,6 +16,7 @@
 #include <continuo/bodies/rigid_stepping/continuous_collision.hpp>
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
 #include <continuo/bodies/rigid_stepping/joint_rows.hpp>
+#include <continuo/bodies/rigid_stepping/manifold_solver.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_sleep.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
@@ -52,7 +53,7 @@ class RigidStepper {
     return deepest;
   }
   [[nodiscard]] std::size_t memory() const {
-    return bodies_.capacity() * sizeof(bodies_[0]) + pairs_.memory() + contacts_.memory() +
+    return bodies_.capacity() * sizeof(bodies_[0]) + pairs_.memory() + contacts_.memory() + manifolds_.memory() +
            rows_.rows.capacity() * sizeof(rows_.rows[0]) + rows_.blocks.capacity() * sizeof(RowBlock);
   }
 
@@ -76,12 +77,17 @@ class RigidStepper {
     if (Status fault = check_world(); !fault) return fault;
     load();
     find_contacts();
-    gather_rows();
+    gather_blocks();
     islands_.find(bodies_.size(), rows_.blocks, [this](std::uint32_t i) { return moves(i); });
+    choose_solvers();
+    gather_rows();
     begin_islands();
+    begin_swept();
     const Real h = substep();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
+    if (!swept_.empty()) manifolds_.store_impulses(contacts_.all(), swept_);
     rebound();
+    take_states();
     if (!all_finite()) {
       is_stale_ = true;
       return {.ending = Ending::not_finite,
@@ -125,7 +131,7 @@ class RigidStepper {
       is_stale_ = false;
     }
     sleep_.wake_changed(world_, bodies_);
-    for (std::size_t i = 0; i < n; ++i) load(i);
+    load_bodies();
     joint_handles_ = world_.joints();
     joints_.resize(joint_handles_.size());
     for (std::size_t k = 0; k < joint_handles_.size(); ++k)
@@ -139,17 +145,22 @@ class RigidStepper {
     }
     std::ranges::sort(apart_);
   }
+  void load_bodies() {
+    team_.for_each(0, world_.size(), 64, [this](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) load(i);
+    });
+  }
   void load(std::size_t i) {
     RigidBody<Real, Dim>& body = bodies_[i];
     body.was_moved = body.x != world_.position[i] || body.orientation != world_.orientation[i];
     body.x = body.x_before = world_.position[i], body.v = world_.velocity[i];
     body.orientation = body.orientation_before = world_.orientation[i], body.spin = world_.spin[i];
-    body.moved = {};
+    body.moved = {}, body.stiffening = {};
     const bool is_still = world_.is_fixed(i) || sleep_.is_asleep(i);
     if (world_.is_fixed(i) && !world_.traits(i).is_driven) body.v = {}, body.spin = {};
     body.inverse_mass = is_still ? Real(0) : world_.inverse_mass[i];
-    body.is_ball = world_.solid(i) == nullptr;
     body.inertia = world_.inertia(i);
+    body.is_ball = world_.solid(i) == nullptr || is_isotropic(body.inertia);
     body.inverse_inertia = is_still ? Inertia<Real, Dim>{} : inverse(body.inertia);
     body.update_axes();
   }
@@ -160,23 +171,82 @@ class RigidStepper {
              (apart_.empty() || !std::ranges::binary_search(apart_, std::pair(std::min(i, j), std::max(i, j))));
     };
     for (;;) {
-      statistics.lists += pairs_.update(world_, bodies_, options_.step, collide) ? 1 : 0;
+      statistics.lists += pairs_.update(team_, world_, bodies_, options_.step, collide) ? 1 : 0;
       const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
       contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active);
       if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return;
-      for (std::size_t i = 0; i < world_.size(); ++i) load(i);
+      load_bodies();
     }
   }
-  /// Rows of contacts first: they stay the same during a step, those of joints follow the bodies.
-  void gather_rows() {
-    rows_.clear();
-    active_.clear();
+  /// The blocks of contacts, still without rows, and those of joints.
+  void gather_blocks() {
+    rows_.clear(), active_.clear();
     const auto all = contacts_.all();
     for (std::uint32_t k = 0; k < all.size(); ++k) {
       const auto& found = all[k];
-      if ((!moves(found.a) && !moves(found.b)) || !pushes(found)) continue;
-      add_rows(found.contact, found.a, found.b, bodies_[found.a], bodies_[found.b], rows_);
+      if (found.contact.size == 0 || (!moves(found.a) && !moves(found.b)) || !pushes(found)) continue;
+      rows_.blocks.push_back({.a = found.a,
+                              .b = found.b,
+                              .rows = static_cast<std::uint16_t>(found.contact.size * Dim),
+                              .points = static_cast<std::uint16_t>(found.contact.size)});
       active_.push_back(k);
+    }
+    contact_rows_ = 0;
+    gather_joints();
+  }
+  /// Islands are solved directly where that is cheap: those that are as thin as a stack, and small ones, unless the
+  /// world is crowded. In others contacts are swept, several at once, and joints one by one between them.
+  void choose_solvers() {
+    solvers_.resize(islands_.size());
+    const bool is_crowded = active_.size() > most_contacts_of_thick_islands;
+    is_swept_.assign(islands_.size(), false);
+    for_each_island([&](std::size_t k) {
+      const auto blocks = islands_.blocks(k);
+      const auto contacts =
+          std::ranges::count_if(blocks, [this](std::uint32_t block) { return block < active_.size(); });
+      const bool has_joints = static_cast<std::size_t>(contacts) < blocks.size();
+      const bool is_thin = 4 * blocks.size() <= 5 * islands_.bodies(k).size();
+      const bool is_cheap = is_thin || (!is_crowded && blocks.size() <= most_blocks_of_small_islands);
+      if (is_cheap || has_joints) solvers_[k].begin(islands_, k, rows_, bodies_);
+      const bool is_large = static_cast<std::size_t>(contacts) > most_blocks_of_small_islands;
+      if (has_joints ? is_large && !solvers_[k].is_direct() : !is_cheap) is_swept_[k] = 1;
+    });
+    swept_.clear();
+    is_in_lanes_.assign(world_.size(), false);
+    for (std::size_t k = 0; k < islands_.size(); ++k)
+      if (is_swept_[k])
+        for (const std::uint32_t i : islands_.bodies(k)) is_in_lanes_[i] = true;
+    const auto is_in_lanes = [this](std::uint32_t i) { return i < world_.size() && is_in_lanes_[i]; };
+    swept_joints_.clear();
+    for (std::uint32_t block = 0; block < rows_.blocks.size(); ++block) {
+      if (!is_in_lanes(rows_.blocks[block].a) && !is_in_lanes(rows_.blocks[block].b)) continue;
+      block < active_.size() ? swept_.push_back(active_[block]) : swept_joints_.push_back(block);
+    }
+    find_bodies_of_swept_joints();
+  }
+  void find_bodies_of_swept_joints() {
+    joined_.clear();
+    for (const std::uint32_t block : swept_joints_)
+      for (const std::uint32_t i : {rows_.blocks[block].a, rows_.blocks[block].b})
+        if (i < world_.size() && is_in_lanes_[i]) joined_.push_back(i);
+    std::ranges::sort(joined_);
+    const auto rest = std::ranges::unique(joined_);
+    joined_.erase(rest.begin(), rest.end());
+  }
+  /// Rows of contacts that are not swept come first: they stay the same during a step, those of joints follow the
+  /// bodies.
+  void gather_rows() {
+    rows_.rows.clear();
+    scalar_.clear();
+    rows_.blocks.resize(active_.size());
+    for (std::size_t k = 0; k < islands_.size(); ++k)
+      if (!is_swept_[k])
+        for (const std::uint32_t block : islands_.blocks(k))
+          if (block < active_.size()) scalar_.push_back(block);
+    std::ranges::sort(scalar_);
+    for (const std::uint32_t k : scalar_) {
+      const auto& found = contacts_.all()[active_[k]];
+      rows_.blocks[k] = add_rows(found.contact, found.a, found.b, bodies_[found.a], bodies_[found.b], rows_.rows);
     }
     contact_rows_ = rows_.rows.size();
     gather_joints();
@@ -189,6 +259,7 @@ class RigidStepper {
   void gather_joints() {
     rows_.rows.resize(contact_rows_), rows_.blocks.resize(active_.size());
     joint_rows_.clear(), acting_joints_.clear();
+    if (joints_.empty() && !world_.has_traits()) return;
     for (RigidBody<Real, Dim>& body : bodies_) body.stiffening = {};
     const Real h = substep();
     const Softness<Real> soft = softness(1 / (4 * h), Real(2), h);
@@ -233,11 +304,9 @@ class RigidStepper {
     if (block.rows > 0) rows_.blocks.push_back(block);
   }
   void begin_islands() {
-    solvers_.resize(islands_.size());
     is_alone_.assign(world_.size(), true);
     for (std::size_t k = 0; k < islands_.size(); ++k)
       for (const std::uint32_t i : islands_.bodies(k)) is_alone_[i] = false;
-    for_each_island([this](std::size_t k) { solvers_[k].begin(islands_, k, rows_, bodies_); });
     hardness_.clear();
     const Real h = substep(), hertz = std::min(options_.hertz, 1 / (8 * h));
     const Softness<Real> soft = softness(hertz, options_.damping, h);
@@ -245,12 +314,30 @@ class RigidStepper {
     hardness_.assign(rows_.blocks.size(), {h, soft.rate, soft.of_impulse / soft.of_mass, options_.fastest_push});
     for (std::size_t k = 0; k < islands_.size(); ++k)
       for (const std::uint32_t block : islands_.blocks(k))
-        if (block >= active_.size() + acting_joints_.size()) {
+        if (block >= active_.size() + acting_joints_.size() || (is_swept_[k] && block < active_.size())) {
           continue;
         } else if (block >= active_.size()) {
-          joints_[acting_joints_[block - active_.size()]].is_swept = !solvers_[k].is_direct();
+          joints_[acting_joints_[block - active_.size()]].is_swept = is_swept_[k] || !solvers_[k].is_direct();
         } else if (solvers_[k].is_direct())
           hardness_[block] = {h, Real(0.2) / h, Real(0), options_.fastest_push};
+  }
+  void begin_swept() {
+    in_lanes_.clear(), easy_.clear();
+    is_easy_.assign(world_.size(), false);
+    if (swept_.empty()) return;
+    const Real h = substep();
+    manifolds_.begin(bodies_, contacts_.all(), swept_);
+    manifolds_.set_hardness(h, softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h),
+                            options_.fastest_push);
+    statistics.colours = manifolds_.colours();
+    const bool is_simple = only_gravity(world_) && !world_.has_traits() && world_.torque_laws.empty();
+    for (std::uint32_t i = 0; i < world_.size(); ++i) {
+      const RigidBody<Real, Dim>& body = bodies_[i];
+      if (!body.is_fixed() && is_alone_[i]) is_in_lanes_[i] = true;
+      const bool is_driven = body.is_fixed() && (body.v != V{} || body.spin != S{});
+      if (is_in_lanes_[i] || is_driven)
+        (is_easy_[i] = is_simple && body.is_ball && !is_driven) ? easy_.push_back(i) : in_lanes_.push_back(i);
+    }
   }
   template <class Act>
   void for_each_island(Act&& act) {
@@ -261,33 +348,112 @@ class RigidStepper {
 
   void move_substep(const Real& now, const Real& h) {
     accelerate(now, h);
+    for (const std::uint32_t i : joined_) take_state(i);
     if (has_joint_rows()) gather_joints();
     aim_contacts();
-    for_each_island([this](std::size_t k) { solvers_[k].push(rows_, bodies_); });
-    for (std::size_t i = 0; i < world_.size(); ++i) {
-      RigidBody<Real, Dim>& body = bodies_[i];
-      if (body.is_fixed()) {
-        body.move(h);
-        if (body.v != V{} || body.spin != S{}) body.update_axes();
-        continue;
-      }
-      body.move(h);
-      if (is_alone_[i]) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
-      body.axes = rotation(body.orientation);
-    }
+    for_each_island([this](std::size_t k) {
+      if (!is_swept_[k]) solvers_[k].push(rows_, bodies_);
+    });
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      if (swept_.empty() || !is_in_lanes_[i]) move(i, h);
+    if (!swept_.empty()) push_swept(h);
     keep_contacts();
     keep_joints();
+    for (const std::uint32_t i : joined_) take_state(i);
     if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
     aim_contacts();
-    for_each_island([this](std::size_t k) { solvers_[k].relax(rows_, bodies_); });
+    for_each_island([this](std::size_t k) {
+      if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
+    });
+    if (!swept_.empty()) relax_swept();
     note_greatest_impulses();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
+  }
+  void move(std::size_t i, const Real& h) {
+    RigidBody<Real, Dim>& body = bodies_[i];
+    body.move(h);
+    if (body.is_fixed()) {
+      if (body.v != V{} || body.spin != S{}) body.update_axes();
+      return;
+    }
+    if (is_alone_[i]) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
+    body.axes = rotation(body.orientation);
+  }
+  /// Constraints push, and bodies move.
+  void push_swept(const Real& h) {
+    manifolds_.sweep(ManifoldPass::begin);
+    for_each_swept_joint([this](const RowBlock& block, auto& a, auto& b) {
+      for (const auto& row : rows_.of(block))
+        if (row.impulse != Real(0)) row.apply(row.impulse, a, b);
+    });
+    sweep_joints(RowPass::push);
+    manifolds_.sweep(ManifoldPass::push);
+    team_.for_each(0, in_lanes_.size(), 128, [&](std::size_t from, std::size_t to) {
+      for (const std::uint32_t i : std::span(in_lanes_).subspan(from, to - from)) move_state(i, bodies_[i].lag, h);
+    });
+    team_.for_each(0, easy_.size(), 128, [&](std::size_t from, std::size_t to) {
+      for (const std::uint32_t i : std::span(easy_).subspan(from, to - from)) move_state(i, S{}, h);
+    });
+  }
+  void relax_swept() {
+    sweep_joints(RowPass::relax);
+    manifolds_.sweep(ManifoldPass::relax);
+  }
+  void sweep_joints(RowPass pass) {
+    for_each_swept_joint(
+        [&](const RowBlock& block, auto& a, auto& b) { sweep<Real, Dim>(rows_.of(block), block, pass, a, b); });
+  }
+  /// Joints of islands whose contacts are swept in lanes: act(block, a, b) changes the velocities of both bodies.
+  template <class Act>
+  void for_each_swept_joint(Act&& act) {
+    for (const std::uint32_t k : swept_joints_) {
+      const RowBlock& block = rows_.blocks[k];
+      for (const std::uint32_t i : {block.a, block.b})
+        bodies_[i].v = manifolds_.state(i).v(), bodies_[i].spin = manifolds_.state(i).spin();
+      act(block, bodies_[block.a], bodies_[block.b]);
+      for (const std::uint32_t i : {block.a, block.b})
+        manifolds_.state(i).set_v(bodies_[i].v), manifolds_.state(i).set_spin(bodies_[i].spin);
+    }
+  }
+  void move_state(std::uint32_t i, const S& lag, const Real& h) {
+    auto& state = manifolds_.state(i);
+    if constexpr (Dim == 2) {
+      continuo::move(state, S(state.spin() + lag), h, manifolds_.angle(i));
+    } else {
+      continuo::move(state, S(state.spin() + lag), h);
+    }
+    if (i < is_alone_.size() && is_alone_[i] && !bodies_[i].is_fixed())
+      state.set_moved(state.moved() - acceleration_[i] * (h * h / 2));
+  }
+  void take_states() {
+    if (swept_.empty()) return;
+    team_.for_each(0, world_.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        if (is_in_lanes_[i]) take_state(i);
+    });
+  }
+  /// The state of a body in lanes after a substep or a step.
+  void take_state(std::size_t i) {
+    RigidBody<Real, Dim>& body = bodies_[i];
+    const auto& state = manifolds_.state(i);
+    body.v = state.v(), body.spin = state.spin();
+    body.moved = state.moved(), body.x = body.x_before + body.moved;
+    if constexpr (Dim == 2) {
+      body.orientation[0] = body.orientation_before[0] + manifolds_.angle(i);
+    } else {
+      const Orientation<Real, Dim> turned = product(state.turn(), body.orientation_before);
+      body.orientation = turned * (1 / length(turned));
+    }
+    body.axes = rotation(body.orientation);
   }
   [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size(); }
   void accelerate(const Real& now, const Real& h) {
     const std::size_t n = world_.size();
     acceleration_.resize(n);
-    if (only_gravity(world_)) {
+    const bool has_only_gravity = only_gravity(world_);
+    for (const std::uint32_t i : in_lanes_)
+      if (!bodies_[i].is_fixed()) take_state(i);
+    if (has_only_gravity) {
       for (std::size_t i = 0; i < n; ++i) acceleration_[i] = world_.gravity;
     } else {
       std::vector<V> x(n), v(n);
@@ -300,6 +466,7 @@ class RigidStepper {
     std::vector<S> torque;
     if (!world_.torque_laws.empty()) torque = torques_now(now);
     for (std::size_t i = 0; i < n; ++i) {
+      if (is_easy_[i]) continue;
       RigidBody<Real, Dim>& body = bodies_[i];
       if (body.is_fixed()) continue;
       body.v += acceleration_[i] * h;
@@ -311,6 +478,12 @@ class RigidStepper {
       body.spin *= 1 / (1 + h * traits.spin_damping);
       is_alone_[i] = is_alone_[i] && traits.damping == Real(0);
     }
+    for (const std::uint32_t i : in_lanes_)
+      manifolds_.state(i).set_v(bodies_[i].v), manifolds_.state(i).set_spin(bodies_[i].spin);
+    team_.for_each(0, easy_.size(), 256, [&](std::size_t from, std::size_t to) {
+      for (const std::uint32_t i : std::span(easy_).subspan(from, to - from))
+        manifolds_.state(i).set_v(manifolds_.state(i).v() + acceleration_[i] * h);
+    });
   }
   [[nodiscard]] std::vector<S> torques_now(const Real& now) const {
     const std::size_t n = world_.size();
@@ -323,7 +496,7 @@ class RigidStepper {
     return torque;
   }
   void aim_contacts() {
-    for (std::size_t k = 0; k < active_.size(); ++k) {
+    for (const std::uint32_t k : scalar_) {
       const auto& found = contacts_.all()[active_[k]];
       aim(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b], hardness_[k]);
     }
@@ -331,7 +504,7 @@ class RigidStepper {
   /// Keeps the impulses of a substep.
   /// @{
   void keep_contacts() {
-    for (std::size_t k = 0; k < active_.size(); ++k)
+    for (const std::uint32_t k : scalar_)
       keep_impulses<Real, Dim>(contacts_.all()[active_[k]].contact, rows_.of(rows_.blocks[k]));
   }
   void keep_joints() {
@@ -349,7 +522,7 @@ class RigidStepper {
 
   /// @}
   void note_greatest_impulses() {
-    for (std::size_t k = 0; k < active_.size(); ++k) {
+    for (const std::uint32_t k : scalar_) {
       auto& contact = contacts_.all()[active_[k]].contact;
       const auto rows = rows_.of(rows_.blocks[k]);
       for (std::size_t i = 0; i < contact.size; ++i)
@@ -369,11 +542,33 @@ class RigidStepper {
           if (does_rebound(contact, point, threshold)) rebounds[island] = true;
       }
     if (std::ranges::find(rebounds, true) == rebounds.end()) return;
+    rebound_swept(rebounds, threshold);
     for_each_island([&](std::size_t island) {
-      if (!rebounds[island]) return;
+      if (!rebounds[island] || is_swept_[island]) return;
       for (const std::uint32_t k : islands_.blocks(island)) prepare_rebound(k, threshold);
       solvers_[island].rebound(rows_, bodies_);
     });
+  }
+  void rebound_swept(const std::vector<bool>& rebounds, const Real& threshold) {
+    std::vector<bool> is_meant(bodies_.size());
+    bool acts = false;
+    for (std::size_t k = 0; k < islands_.size(); ++k) {
+      if (!rebounds[k] || !is_swept_[k]) continue;
+      acts = true;
+      for (const std::uint32_t i : islands_.bodies(k)) is_meant[i] = true;
+    }
+    if (!acts) return;
+    manifolds_.prepare_rebound(
+        contacts_.all(), swept_, [&](const auto& found) { return is_meant[found.a] || is_meant[found.b]; },
+        [&](const auto& contact, const auto& point) {
+          return does_rebound(contact, point, threshold) ? contact.restitution * point.approach : Real(0);
+        });
+    for (const std::uint32_t block : swept_joints_)
+      for (auto& row : rows_.of(rows_.blocks[block])) row.impulse = Real(0), row.bias_at_end = Real(0);
+    for (int k = 0; k < sweeps_of_impacts; ++k) {
+      sweep_joints(RowPass::relax);
+      manifolds_.sweep(ManifoldPass::rebound);
+    }
   }
   [[nodiscard]] static bool does_rebound(const RigidContact<Real, Dim>& contact,
                                          const RigidContactPoint<Real, Dim>& point, const Real& threshold) {
@@ -403,7 +598,7 @@ class RigidStepper {
   }
   void stop_fast_bodies() {
     statistics.impacts +=
-        continuo::stop_fast_bodies<Real, Dim>(world_, pairs_, contacts_.all(), options_.step, bodies_);
+        continuo::stop_fast_bodies<Real, Dim>(world_, pairs_, contacts_.without_meshes(), options_.step, bodies_);
   }
 
   void store() {
@@ -500,9 +695,21 @@ class RigidStepper {
     archive(touches_), archive(sleep_);
   }
 
+  static constexpr int sweeps_of_impacts = 20;
+  static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 60;
+
   World<Real, Dim>& world_;
   FastOptions<Real> options_;
   ThreadTeam team_;
+  ManifoldSolver<Real, Dim> manifolds_{team_};
+  std::vector<std::uint32_t> swept_;            // the contacts of islands that are swept
+  std::vector<std::uint32_t> swept_joints_;     // their blocks of joints and locks
+  std::vector<std::uint32_t> joined_;           // the bodies of these
+  std::vector<std::uint8_t> is_swept_;          // of each island
+  std::vector<bool> is_in_lanes_;               // bodies of those islands, and bodies without contacts
+  std::vector<bool> is_easy_;                   // those that keep their spin, in gravity alone
+  std::vector<std::uint32_t> easy_, in_lanes_;  // these, and the others, with driven ones
+  std::vector<std::uint32_t> scalar_;           // the blocks of all other contacts
   std::vector<RigidBody<Real, Dim>> bodies_;
   RigidPairs<Real, Dim> pairs_;
   RigidContacts<Real, Dim> contacts_;

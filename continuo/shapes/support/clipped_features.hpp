@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -14,22 +15,33 @@
 
 namespace continuo {
 
-/// An array whose numbers are nothing at first: to clear arrays of 64 corners takes longer than to fill four of them.
+/// Up to so many numbers, of which those that are not there yet are not cleared: to clear arrays of 64 corners takes
+/// longer than to fill four of them.
 template <class T, std::size_t Most>
-class UnclearedArray {
+class ShortList {
  public:
-  static_assert(std::is_trivially_destructible_v<T> && std::is_trivially_copyable_v<T>);
-  UnclearedArray() {}  // NOLINT: leaves the bytes as they are
-  UnclearedArray(const UnclearedArray&) = delete;
-  UnclearedArray& operator=(const UnclearedArray&) = delete;
-
+  static_assert(std::is_trivially_copyable_v<T>);
+  ShortList() {}  // NOLINT(modernize-use-equals-default): leaves the bytes as they are
+  ShortList(const ShortList& other) { *this = other; }
+  ShortList& operator=(const ShortList& other) {
+    size_ = other.size_;
+    std::memcpy(bytes_, other.bytes_, size_ * sizeof(T));
+    return *this;
+  }
+  void add(const T& value) {
+    if (size_ < Most) data()[size_++] = value;
+  }
+  void resize(std::size_t size) { size_ = size; }
+  [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] T* data() { return reinterpret_cast<T*>(bytes_); }
   [[nodiscard]] const T* data() const { return reinterpret_cast<const T*>(bytes_); }
   [[nodiscard]] T& operator[](std::size_t i) { return data()[i]; }
   [[nodiscard]] const T& operator[](std::size_t i) const { return data()[i]; }
-  [[nodiscard]] static constexpr std::size_t size() { return Most; }
+  [[nodiscard]] const T* begin() const { return data(); }
+  [[nodiscard]] const T* end() const { return data() + size_; }
 
  private:
+  std::size_t size_ = 0;
   alignas(T) std::byte bytes_[Most * sizeof(T)];
 };
 
@@ -37,22 +49,23 @@ class UnclearedArray {
 template <class Real, int Dim>
 struct Feature {
   static constexpr std::size_t most_corners = Dim == 2 ? 2 : Polytope<Real, 3>::most_corners;
-  UnclearedArray<Vector<Real, Dim>, most_corners> corners;
-  UnclearedArray<std::uint8_t, most_corners> numbers;
+  ShortList<Vector<Real, Dim>, most_corners> corners;
+  ShortList<std::uint8_t, most_corners> numbers;
   std::size_t size = 0;
   Vector<Real, Dim> normal{};  // of a face; 0 of a segment in space and of a corner
 
   void add(const Vector<Real, Dim>& corner, std::size_t number) {
-    corners[size] = corner;
-    numbers[size++] = static_cast<std::uint8_t>(number);
+    corners.add(corner), numbers.add(static_cast<std::uint8_t>(number));
+    size = corners.size();
   }
 };
 
 /// The face whose normal is nearest to the direction. Of a segment: the whole, or the end that is farther in the
 /// direction where it is steeper than 1 in 20.
 template <class Real, int Dim>
-void find_facing_feature(const Polytope<Real, Dim>& polytope, const Vector<Real, Dim>& direction,
-                         Feature<Real, Dim>& feature) {
+[[nodiscard]] Feature<Real, Dim> facing_feature(const Polytope<Real, Dim>& polytope,
+                                                const Vector<Real, Dim>& direction) {
+  Feature<Real, Dim> feature;
   const auto& corners = polytope.corners;
   if (polytope.faces.empty()) {
     const Vector<Real, Dim> along = corners.back() - corners.front();
@@ -60,7 +73,7 @@ void find_facing_feature(const Polytope<Real, Dim>& polytope, const Vector<Real,
     const bool is_whole = corners.size() > 1 && std::abs(rise) < Real(0.05) * length(along);
     if (is_whole || !(rise > Real(0))) feature.add(corners.front(), 0);
     if (is_whole || rise > Real(0)) feature.add(corners.back(), corners.size() - 1);
-    return;
+    return feature;
   }
   std::size_t best = 0;
   for (std::size_t face = 1; face < polytope.faces.size(); ++face)
@@ -72,6 +85,7 @@ void find_facing_feature(const Polytope<Real, Dim>& polytope, const Vector<Real,
   } else {
     for (const std::uint8_t corner : polytope.loop(best)) feature.add(corners[corner], corner);
   }
+  return feature;
 }
 template <class Real, int Dim>
 void place(Feature<Real, Dim>& feature, const Pose<Real, Dim>& pose) {
@@ -93,22 +107,20 @@ class CommonPoints {
  public:
   using Point = CommonPoint<Real, Dim>;
 
-  void add(const Point& point) {
-    if (size_ < points_.size()) points_[size_++] = point;
-  }
-  void clear() { size_ = 0; }
-  [[nodiscard]] const Point* begin() const { return points_.data(); }
-  [[nodiscard]] const Point* end() const { return points_.data() + size_; }
+  void add(const Point& point) { points_.add(point); }
+  [[nodiscard]] bool empty() const { return points_.size() == 0; }
+  [[nodiscard]] const Point* begin() const { return points_.begin(); }
+  [[nodiscard]] const Point* end() const { return points_.end(); }
 
   void drop_beyond(const Real& margin) {
-    Point* const kept = std::remove_if(points_.data(), points_.data() + size_,
+    Point* const kept = std::remove_if(points_.data(), points_.data() + points_.size(),
                                        [&](const Point& point) { return point.separation > margin; });
-    size_ = static_cast<std::size_t>(kept - points_.data());
+    points_.resize(static_cast<std::size_t>(kept - points_.data()));
   }
   /// Keeps so many: the deepest one, the one farthest from it, and in space the two that span the largest areas on
   /// either side of their line.
   void reduce(const Vector<Real, Dim>& normal, std::size_t most) {
-    if (size_ <= most) return;
+    if (points_.size() <= most) return;
     choose(0, [&](const Point& p) { return -p.separation; });
     choose(1, [&](const Point& p) { return squared(p.on_a - points_[0].on_a); });
     if constexpr (Dim == 3) {
@@ -116,20 +128,19 @@ class CommonPoints {
       choose(2, [&](const Point& p) { return dot(p.on_a - points_[0].on_a, across); });
       choose(3, [&](const Point& p) { return -dot(p.on_a - points_[0].on_a, across); });
     }
-    size_ = most;
+    points_.resize(most);
   }
 
  private:
   template <class Value>
   void choose(std::size_t place, Value&& value) {
     std::size_t best = place;
-    for (std::size_t i = place + 1; i < size_; ++i)
+    for (std::size_t i = place + 1; i < points_.size(); ++i)
       if (value(points_[i]) > value(points_[best])) best = i;
     std::swap(points_[place], points_[best]);
   }
 
-  UnclearedArray<Point, 2 * Polytope<Real, Dim>::most_corners> points_;
-  std::size_t size_ = 0;
+  ShortList<Point, 2 * Polytope<Real, Dim>::most_corners> points_;
 };
 
 /// The parts of two segments that lie above each other, seen along the normal: the ends of the common part.
@@ -188,11 +199,11 @@ struct CutCorner {
 template <class Real>
 class CutPolygon {
  public:
-  explicit CutPolygon(const Feature<Real, 3>& polygon) : size_(polygon.size) {
-    for (std::size_t i = 0; i < size_; ++i) both_[0][i] = {polygon.corners[i], polygon.numbers[i]};
+  explicit CutPolygon(const Feature<Real, 3>& polygon) {
+    for (std::size_t i = 0; i < polygon.size; ++i) both_[0].add({polygon.corners[i], polygon.numbers[i]});
   }
   void cut(const Feature<Real, 3>& by, const Vector<Real, 3>& normal) {
-    for (std::size_t i = 0; i < by.size && size_ > 0; ++i) {
+    for (std::size_t i = 0; i < by.size && both_[now_].size() > 0; ++i) {
       const std::size_t next = (i + 1) % by.size;
       // Outwards, as the corners go counter-clockwise about the face's own normal.
       Vector<Real, 3> outwards = moment(by.corners[next] - by.corners[i], normal);
@@ -200,39 +211,37 @@ class CutPolygon {
       cut_by_plane(outwards, dot(outwards, by.corners[i]), by.numbers[i]);
     }
   }
-  [[nodiscard]] const CutCorner<Real>* begin() const { return both_[now_].data(); }
-  [[nodiscard]] const CutCorner<Real>* end() const { return both_[now_].data() + size_; }
+  [[nodiscard]] const CutCorner<Real>* begin() const { return both_[now_].begin(); }
+  [[nodiscard]] const CutCorner<Real>* end() const { return both_[now_].end(); }
 
  private:
-  using Corners = UnclearedArray<CutCorner<Real>, 2 * Polytope<Real, 3>::most_corners>;
+  using Corners = ShortList<CutCorner<Real>, 2 * Polytope<Real, 3>::most_corners>;
 
   // Keeps the points x with outwards . x <= offset.
   void cut_by_plane(const Vector<Real, 3>& outwards, const Real& offset, std::uint8_t side) {
     const Corners& corners = both_[now_];
     Corners& kept = both_[1 - now_];
-    std::size_t count = 0;
+    kept.resize(0);
+    const std::size_t size = corners.size();
     const auto beyond = [&](std::size_t i) { return dot(outwards, corners[i].x) - offset; };
-    const std::size_t sides = size_ == 2 ? 1 : size_;  // a segment does not come back
+    const std::size_t sides = size == 2 ? 1 : size;  // a segment does not come back
     const auto crossing = [&](std::size_t i, std::size_t j, const Real& at_i, const Real& at_j) {
       const std::uint32_t feature = (corners[i].feature & 0xffu) | (std::uint32_t{side} + 1) << 8;
-      if (count < kept.size())
-        kept[count++] = {corners[i].x + (corners[j].x - corners[i].x) * (at_i / (at_i - at_j)), feature};
+      kept.add({corners[i].x + (corners[j].x - corners[i].x) * (at_i / (at_i - at_j)), feature});
     };
-    for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t i = 0; i < size; ++i) {
       const Real at_i = beyond(i);
-      if (at_i <= Real(0) && count < kept.size()) kept[count++] = corners[i];
+      if (at_i <= Real(0)) kept.add(corners[i]);
       if (i >= sides) break;
-      const std::size_t j = (i + 1) % size_;
+      const std::size_t j = (i + 1) % size;
       const Real at_j = beyond(j);
       if ((at_i < Real(0) && at_j > Real(0)) || (at_i > Real(0) && at_j < Real(0))) crossing(i, j, at_i, at_j);
     }
     now_ = 1 - now_;
-    size_ = count;
   }
 
   Corners both_[2];
   std::size_t now_ = 0;
-  std::size_t size_;
 };
 
 /// The points of one face that have points of the other feature above them.
@@ -257,18 +266,19 @@ void add_common_with_face(const Feature<Real, 3>& face, const Feature<Real, 3>& 
 /// The points of feature a that have points of feature b above them, seen along the normal: of the area, or the length,
 /// that they have in common, the corners.
 template <class Real, int Dim>
-void find_common_points(const Feature<Real, Dim>& a, const Feature<Real, Dim>& b, const Vector<Real, Dim>& normal,
-                        CommonPoints<Real, Dim>& common) {
+[[nodiscard]] CommonPoints<Real, Dim> common_points(const Feature<Real, Dim>& a, const Feature<Real, Dim>& b,
+                                                    const Vector<Real, Dim>& normal) {
+  CommonPoints<Real, Dim> common;
   if constexpr (Dim == 3) {
     const bool is_face_a = a.size > 2, is_face_b = b.size > 2;
     // The face that is seen more nearly from above cuts the other.
     if (is_face_a && (!is_face_b || std::abs(dot(a.normal, normal)) >= std::abs(dot(b.normal, normal)) - Real(1e-3))) {
       add_common_with_face(a, b, normal, true, common);
-      return;
+      return common;
     }
     if (is_face_b) {
       add_common_with_face(b, a, normal, false, common);
-      return;
+      return common;
     }
   }
   if constexpr (Dim == 2) {
@@ -279,13 +289,14 @@ void find_common_points(const Feature<Real, Dim>& a, const Feature<Real, Dim>& b
     if constexpr (Dim == 3) {
       // Segments that are not nearly parallel cross in one point, the closest one.
       const Vector<Real, 3> across = moment(u, v);
-      if (squared(across) > Real(0.0025) * squared(u) * squared(v)) return;
+      if (squared(across) > Real(0.0025) * squared(u) * squared(v)) return common;
     }
     const Real seen_a = squared(u) - dot(u, normal) * dot(u, normal);
     const Real seen_b = squared(v) - dot(v, normal) * dot(v, normal);
     if (seen_a > Real(0.0025) * squared(u) && seen_b > Real(0.0025) * squared(v))
       add_common_of_segments(a, b, normal, common);
   }
+  return common;
 }
 
 }  // namespace continuo

@@ -1,0 +1,15 @@
+// The kernels of manifolds for registers of 16 bytes, of doubles.
+#include <continuo/bodies/manifold_kernels/manifold_kernel.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+ManifoldKernels<Real, Dim> kernels_of_16_bytes() {
+  using L = xsimd::make_sized_batch_t<Real, 16 / sizeof(Real)>;
+  return {L::size, &solve_manifolds<L, Dim>};
+}
+
+template ManifoldKernels<double, 2> kernels_of_16_bytes();
+template ManifoldKernels<double, 3> kernels_of_16_bytes();
+
+}  // namespace continuo

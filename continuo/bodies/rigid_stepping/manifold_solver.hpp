@@ -1,0 +1,220 @@
+// Solves the contacts of large islands by sweeps, as many manifolds at once as the registers of the machine have lanes,
+// colour by colour, each colour by all threads. The results do not depend on the width of registers, nor on threads.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/contact_solver/contact_step.hpp>
+#include <continuo/bodies/manifold_kernels/contact_colours.hpp>
+#include <continuo/bodies/manifold_kernels/manifold_layout.hpp>
+#include <continuo/bodies/manifold_kernels/solver_states.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
+#include <continuo/bodies/support/large_array.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class ManifoldSolver {
+ public:
+  using V = Vector<Real, Dim>;
+  using At = ManifoldLayout<Dim>;
+  using Bodies = std::span<RigidBody<Real, Dim>>;
+
+  explicit ManifoldSolver(ThreadTeam& team,
+                          const ManifoldKernels<Real, Dim>& kernels = manifold_kernels<Real, Dim>().back())
+      : team_(team), kernels_(kernels) {}
+
+  /// Takes the bodies, and the contacts with numbers `which`, at the beginning of a step.
+  void begin(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
+    colour(bodies, contacts, which);
+    take_bodies(bodies);
+    team_.for_each(0, heads_.size(), 4, [&](std::size_t from, std::size_t to) {
+      for (std::size_t batch = from; batch < to; ++batch) fill(batch, bodies, contacts, which);
+    });
+    task_ = {
+        .bodies = states_.data(), .values = value(0, 0, 0), .heads = heads_.data(), .a = a_.data(), .b = b_.data()};
+    sweep(ManifoldPass::prepare);
+  }
+  /// How contacts are held apart in the substeps of the step.
+  void set_hardness(const Real& h, const Softness<Real>& soft, const Real& fastest_push) {
+    task_.h = h;
+    task_.rate = soft.rate, task_.of_mass = soft.of_mass, task_.of_impulse = soft.of_impulse;
+    task_.fastest_push = fastest_push;
+  }
+  void sweep(ManifoldPass pass) {
+    for (std::size_t c = 0; c < ContactColours::most; ++c)
+      team_.for_each(first_[c], first_[c + 1], ContactColours::is_shared(c) ? first_[c + 1] - first_[c] : 4,
+                     [&](std::size_t from, std::size_t to) { kernels_.apply(task_, pass, from, to); });
+  }
+  [[nodiscard]] SolverState<Real, Dim>& state(std::size_t body) { return states_[body]; }
+  /// The angle in the plane by which a body has turned since the step began.
+  [[nodiscard]] Real& angle(std::size_t body) { return angles_[body]; }
+  [[nodiscard]] std::size_t colours() const { return colours_.size(); }
+
+  /// Gives back the impulses of the last substep, and the greatest ones.
+  void store_impulses(std::span<PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
+    for_each_lane(which, [&](std::size_t batch, std::size_t lane, std::uint32_t k) {
+      auto& contact = contacts[k].contact;
+      const auto across = directions_across(contact.normal);
+      for (std::size_t p = 0; p < contact.size; ++p) {
+        auto& point = contact.points[p];
+        point.impulse = *value(batch, lane, row(p, At::impulse));
+        point.greatest_impulse = *value(batch, lane, row(p, At::greatest_impulse));
+        point.friction = {};
+        for (std::size_t i = 0; i < across.size(); ++i)
+          point.friction += across[i] * *value(batch, lane, row(p, At::impulse_across + i));
+      }
+    });
+  }
+  /// Prepares passes that give contacts the normal velocities speed_of(contact, point), in islands with impacts: others
+  /// are left alone.
+  template <class IsMeant, class SpeedOf>
+  void prepare_rebound(std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which,
+                       IsMeant&& is_meant, SpeedOf&& speed_of) {
+    for (BatchHead& head : heads_) head.is_meant = false;
+    for_each_lane(which, [&](std::size_t batch, std::size_t lane, std::uint32_t k) {
+      const auto& contact = contacts[k].contact;
+      const bool acts = is_meant(contacts[k]);
+      heads_[batch].is_meant |= acts;
+      for (std::size_t p = 0; p < contact.size; ++p) {
+        const Real speed = speed_of(contact, contact.points[p]);
+        for (std::size_t i = 0; i < Dim; ++i) *value(batch, lane, row(p, At::impulse + i)) = Real(0);
+        *value(batch, lane, row(p, At::separation)) = speed;
+        if (!acts || (speed == Real(0) && contact.points[p].impulse == Real(0)))
+          for (std::size_t i = 0; i < Dim; ++i) *value(batch, lane, row(p, At::mass + i)) = Real(0);
+      }
+    });
+  }
+  [[nodiscard]] std::size_t memory() const {
+    return values_.capacity() * sizeof(Line) + states_.capacity() * sizeof(states_[0]) +
+           (a_.capacity() + b_.capacity()) * sizeof(a_[0]) + heads_.capacity() * sizeof(heads_[0]);
+  }
+
+ private:
+  /// Numbers that begin where a register may be loaded.
+  struct alignas(64) Line {
+    std::array<Real, 64 / sizeof(Real)> numbers;
+  };
+  [[nodiscard]] static constexpr std::size_t row(std::size_t point, std::size_t of_point) {
+    return At::points + point * At::of_point + of_point;
+  }
+  [[nodiscard]] Real* value(std::size_t batch, std::size_t lane, std::size_t row_number) {
+    return values_.data()->numbers.data() + (batch * At::rows + row_number) * kernels_.lanes + lane;
+  }
+
+  void colour(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
+    coloured_.resize(which.size());
+    const auto mover = [&](std::uint32_t i) { return bodies[i].is_fixed() ? ColouredContact::none : i; };
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const auto& found = contacts[which[k]];
+      coloured_[k] = {mover(found.a), mover(found.b), static_cast<std::uint8_t>(found.contact.size)};
+    }
+    colours_.find(coloured_, bodies.size());
+    const std::size_t lanes = kernels_.lanes;
+    std::size_t batches = 0;
+    for (std::size_t c = 0; c < ContactColours::most; ++c) {
+      first_[c] = batches;
+      const std::size_t of_colour = colours_.of(c).size();
+      batches += ContactColours::is_shared(c) ? of_colour : (of_colour + lanes - 1) / lanes;
+    }
+    first_[ContactColours::most] = batches;
+    heads_.assign(batches, {});
+    const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
+    a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
+    in_lane_.assign(batches * lanes, no_contact);
+    values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line) + 1);
+    for (std::size_t c = 0; c < ContactColours::most; ++c) {
+      const auto members = colours_.of(c);
+      for (std::size_t i = 0; i < members.size(); ++i)
+        in_lane_[first_[c] * lanes + (ContactColours::is_shared(c) ? i * lanes : i)] = members[i];
+    }
+  }
+  void take_bodies(Bodies bodies) {
+    states_.resize(bodies.size() + 1);
+    angles_.assign(Dim == 2 ? bodies.size() : 0, Real(0));
+    states_.back() = {};
+    team_.for_each(0, bodies.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        SolverState<Real, Dim> state;
+        state.set_v(bodies[i].v), state.set_spin(bodies[i].spin);
+        state.set_inverse_mass(bodies[i].inverse_mass);
+        if constexpr (Dim == 3) state.set_turn({{1, 0, 0, 0}});
+        states_[i] = state;
+      }
+    });
+  }
+  void fill(std::size_t batch, Bodies bodies, std::span<const PartContact<Real, Dim>> contacts,
+            std::span<const std::uint32_t> which) {
+    std::fill_n(value(batch, 0, 0), At::rows * kernels_.lanes, Real(0));
+    BatchHead& head = heads_[batch];
+    for (std::size_t lane = 0; lane < kernels_.lanes; ++lane) {
+      const std::uint32_t member = in_lane_[batch * kernels_.lanes + lane];
+      if (member == no_contact) {
+        head.is_a_fixed = head.is_b_fixed = true;
+        continue;
+      }
+      const PartContact<Real, Dim>& found = contacts[which[member]];
+      head.points = std::max(head.points, static_cast<std::uint8_t>(found.contact.size));
+      head.is_a_fixed |= bodies[found.a].is_fixed(), head.is_b_fixed |= bodies[found.b].is_fixed();
+      a_[batch * kernels_.lanes + lane] = found.a, b_[batch * kernels_.lanes + lane] = found.b;
+      fill_lane(batch, lane, found.contact, bodies[found.a], bodies[found.b]);
+    }
+  }
+  void fill_lane(std::size_t batch, std::size_t lane, const RigidContact<Real, Dim>& contact,
+                 const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+    const std::size_t lanes = kernels_.lanes;
+    Real* const rows = value(batch, lane, 0);
+    const auto put = [&](std::size_t at, const auto& vector) {
+      for (std::size_t i = 0; i < vector.size(); ++i) rows[(at + i) * lanes] = vector[i];
+    };
+    const auto across = directions_across(contact.normal);
+    put(At::normal, contact.normal);
+    if constexpr (Dim == 3) put(At::across, across[0]);
+    rows[At::friction * lanes] = contact.friction;
+    put(At::inertia_a, numbers_of(a.inverse_inertia_now)), put(At::inertia_b, numbers_of(b.inverse_inertia_now));
+    for (std::size_t p = 0; p < contact.size; ++p) {
+      const auto& point = contact.points[p];
+      put(row(p, At::arm_a), point.arm_a), put(row(p, At::arm_b), point.arm_b);
+      rows[row(p, At::separation) * lanes] = point.separation;
+      rows[row(p, At::mass) * lanes] = Real(1);  // the point exists
+      rows[row(p, At::impulse) * lanes] = point.impulse;
+      for (std::size_t i = 0; i < across.size(); ++i)
+        rows[row(p, At::impulse_across + i) * lanes] = dot(point.friction, across[i]);
+    }
+  }
+  [[nodiscard]] static std::array<Real, 1> numbers_of(const Matrix<Real, 1>& inertia) { return {inertia[0][0]}; }
+  [[nodiscard]] static std::array<Real, 6> numbers_of(const Matrix<Real, 3>& i) {
+    return {i[0][0], i[1][1], i[2][2], i[0][1], i[1][2], i[2][0]};
+  }
+  template <class Act>
+  void for_each_lane(std::span<const std::uint32_t> which, Act&& act) {
+    team_.for_each(0, heads_.size(), 8, [&](std::size_t from, std::size_t to) {
+      for (std::size_t batch = from; batch < to; ++batch)
+        for (std::size_t lane = 0; lane < kernels_.lanes; ++lane)
+          if (const std::uint32_t member = in_lane_[batch * kernels_.lanes + lane]; member != no_contact)
+            act(batch, lane, which[member]);
+    });
+  }
+
+  static constexpr std::uint32_t no_contact = 0xffffffff;
+
+  ThreadTeam& team_;
+  ManifoldKernels<Real, Dim> kernels_;
+  ManifoldTask<Real, Dim> task_;
+  SolverStates<Real, Dim> states_;  // of all bodies, and a spare one
+  std::vector<Real> angles_;
+  std::vector<ColouredContact> coloured_;
+  ContactColours colours_;
+  std::array<std::size_t, ContactColours::most + 1> first_{};  // batch of each colour
+  LargeArray<Line> values_;                                    // see manifold_layout.hpp
+  std::vector<BatchHead> heads_;
+  std::vector<std::uint32_t> a_, b_;    // bodies of each lane
+  std::vector<std::uint32_t> in_lane_;  // which contact
+};
+
+}  // namespace continuo
