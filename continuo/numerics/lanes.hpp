@@ -11,8 +11,9 @@
 // A function templated over its scalar runs W systems at once with it. Where the machine has registers of W numbers one
 // is used, otherwise several smaller ones, otherwise (long double, odd W) plain numbers. Sums, products, quotients and
 // square roots are rounded as for one number, so each lane gives the bits that one number would; the elementary
-// functions of doubles are those of libmvec (registers/vector_functions.hpp), within a few units in the last place of
-// those of <cmath>, or where there is none those of <cmath>. No lane depends on its neighbours, nor on W.
+// functions of doubles are those of libmvec (registers/vector_functions.hpp) and our own (registers/vector_power.hpp),
+// within a few units in the last place of those of <cmath>, or where there is none those of <cmath>. No lane depends on
+// its neighbours, nor on W.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -27,7 +28,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include <continuo/numerics/lane_mask.hpp>
-#include <continuo/numerics/registers/vector_functions.hpp>
+#include <continuo/numerics/registers/vector_power.hpp>
 
 namespace continuo {
 
@@ -145,8 +146,8 @@ class Lanes {
   friend Lanes sqrt(const Lanes& a) { return map([](const Part& x) { using std::sqrt; return Part(sqrt(x)); }, a); }
   friend Lanes floor(const Lanes& a) { return map([](const Part& x) { using std::floor; return Part(floor(x)); }, a); }
   friend Lanes ceil(const Lanes& a) { return map([](const Part& x) { using std::ceil; return Part(ceil(x)); }, a); }
-  friend Lanes sin(const Lanes& a) { return function<detail::vector_sin>([](const auto& x) { using std::sin; return sin(x); }, a); }
-  friend Lanes cos(const Lanes& a) { return function<detail::vector_cos>([](const auto& x) { using std::cos; return cos(x); }, a); }
+  friend Lanes sin(const Lanes& a) { return function<detail::registers::sine_of_register>([](const auto& x) { using std::sin; return sin(x); }, a); }
+  friend Lanes cos(const Lanes& a) { return function<detail::registers::cosine_of_register>([](const auto& x) { using std::cos; return cos(x); }, a); }
   friend Lanes tan(const Lanes& a) { return function<detail::vector_tan>([](const auto& x) { using std::tan; return tan(x); }, a); }
   friend Lanes asin(const Lanes& a) { return function<detail::vector_asin>([](const auto& x) { using std::asin; return asin(x); }, a); }
   friend Lanes acos(const Lanes& a) { return function<detail::vector_acos>([](const auto& x) { using std::acos; return acos(x); }, a); }
@@ -159,7 +160,7 @@ class Lanes {
   friend Lanes exp(const Lanes& a) { return function<detail::vector_exp>([](const auto& x) { using std::exp; return exp(x); }, a); }
   friend Lanes sinh(const Lanes& a) { return function<detail::vector_sinh>([](const auto& x) { using std::sinh; return sinh(x); }, a); }
   friend Lanes cosh(const Lanes& a) { return function<detail::vector_cosh>([](const auto& x) { using std::cosh; return cosh(x); }, a); }
-  friend Lanes pow(const Lanes& a, const Lanes& b) { return function<detail::vector_pow>([](Real x, Real y) { return std::pow(x, y); }, a, b); }
+  friend Lanes pow(const Lanes& a, const Lanes& b) { return function<detail::registers::power_of_register>([](Real x, Real y) { return std::pow(x, y); }, a, b); }
   friend Lanes atan2(const Lanes& a, const Lanes& b) { return function<detail::vector_atan2>([](Real x, Real y) { return std::atan2(x, y); }, a, b); }
   friend Lanes hypot(const Lanes& a, const Lanes& b) { return function<detail::vector_hypot>([](Real x, Real y) { return std::hypot(x, y); }, a, b); }
   /// @}
@@ -197,11 +198,14 @@ class Lanes {
   // Functions of doubles go through one kind of register, whatever W is, so that a number has the same function in
   // every lane of every width. xsimd's would choose their way by all the numbers of a register.
   template <auto OfRegister, class F, class... A>
-  [[nodiscard]] static Lanes function(F one, const A&... a) {
+  [[nodiscard, gnu::always_inline]] static Lanes function(F one, const A&... a) {
     if constexpr (std::same_as<Real, double> && detail::has_vector_functions &&
                   sizeof(Part) == sizeof(detail::NumbersOfRegister)) {
       using Register = detail::NumbersOfRegister;
-      return map([](const auto&... x) { return std::bit_cast<Part>(OfRegister(std::bit_cast<Register>(x)...)); }, a...);
+      Lanes result;
+      for (std::size_t i = 0; i < parts; ++i)
+        result.part_[i] = std::bit_cast<Part>(OfRegister(std::bit_cast<Register>(a.part_[i])...));
+      return result;
     } else if constexpr (std::same_as<Real, double> && detail::has_vector_functions) {
       constexpr std::size_t at_once = detail::vector_width;
       std::array<Real, W> result;

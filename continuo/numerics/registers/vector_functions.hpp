@@ -126,8 +126,6 @@ inline constexpr auto* vector_atan2 = &_ZGVbN2vv_atan2;
 inline constexpr auto* vector_hypot = &_ZGVbN2vv_hypot;
 #endif
 
-#undef CONTINUO_VECTOR_FUNCTIONS
-
 #else
 
 inline constexpr bool has_vector_functions = false;
