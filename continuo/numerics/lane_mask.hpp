@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 #include <xsimd/xsimd.hpp>
@@ -59,7 +60,7 @@ class LaneMask {
     if constexpr (std::same_as<Part, bool>) {
       return part_[lane];
     } else {
-      return part_[lane / Part::size].get(lane % Part::size);
+      return bit(part_[lane / Part::size], lane % Part::size);
     }
   }
 
@@ -106,6 +107,18 @@ class LaneMask {
   static constexpr std::size_t parts = detail::LaneParts<Real, W>::count;
   std::array<Part, parts> part_;
 
+  // xsimd's would write all truth values to memory. A register of them has a bit for each, or all bits of a number.
+  [[nodiscard]] static bool bit(const Part& part, std::size_t i) {
+    if constexpr (sizeof(Part) < Part::size * sizeof(Real)) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &part, sizeof part);
+      return (bits >> i & 1U) != 0;
+    } else {
+      std::array<unsigned char, sizeof(Real)> number;
+      std::memcpy(&number, reinterpret_cast<const char*>(&part) + i * sizeof(Real), sizeof number);
+      return number[0] != 0;
+    }
+  }
   [[nodiscard]] static bool any_in(const Part& part) {
     if constexpr (std::same_as<Part, bool>) {
       return part;

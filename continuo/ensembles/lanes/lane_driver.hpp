@@ -204,6 +204,7 @@ class LaneDriver {
       return finish(lane);
     }
     if (!one.begin(run, std::move(start))) return finish(lane);
+    must_look_.set(lane, one.must_look() ? 1.0 : 0.0);
     if constexpr (PartOfPair<M>) pairs_[lane].begin(one.x());
     begin_motion(lane);
   }
@@ -469,9 +470,12 @@ class LaneDriver {
 
   // Lets the runs of those lanes pass their step in which there is something: a guard near to zero, a row, a tick.
   [[nodiscard]] bool look_at_lanes(const typename Wide::Mask& near, std::array<Next, W>& next, Wide& asked) {
+    const auto visited = lanes_to_visit(near);
+    skipped_ = select(sizes_.accepted() & !visited, Wide(1.0), skipped_);
+    if (none(visited)) return false;
     bool any_next = false, interpolated = any_guard();
     for (std::size_t lane = 0; lane < W; ++lane) {
-      if (!sizes_.is_active(lane) || !sizes_.accepted()[lane]) continue;
+      if (!visited[lane]) continue;
       Run& one = runs_[lane];
       const double end = sizes_.end()[lane];
       const bool looks = near[lane] || one.must_look() || one.has_row_before(end) || one.is_watched(end);
@@ -485,8 +489,19 @@ class LaneDriver {
     }
     return any_next;
   }
+  // Those whose runs have to be asked. Where only guards are watched, the others have none near to zero and do not end:
+  // they are told of the steps that they have skipped when they pass one.
+  [[nodiscard]] typename Wide::Mask lanes_to_visit(const typename Wide::Mask& near) const {
+    const auto accepted = sizes_.active() & sizes_.accepted();
+    if (has_own_runs || Source::any_scheduled || has_rows_) return accepted;
+    return accepted & (near | (must_look_ != Wide(0.0)) | (sizes_.end() == Wide(settings_.interval.to)));
+  }
   [[nodiscard]] Next pass_step(std::size_t lane, Wide& asked) {
     Run& one = runs_[lane];
+    if (skipped_[lane] != 0) {
+      one.skip_step();
+      skipped_.set(lane, 0.0);
+    }
     auto step = one.steps().took(sizes_.t()[lane], sizes_.h()[lane], sizes_.end()[lane]);
     get(x_, lane, step.begin);
     get(x_new_, lane, step.end);
@@ -497,6 +512,7 @@ class LaneDriver {
       one.steps().set_pair(pairs_[lane]);
     }
     const bool changed = one.pass_step();
+    must_look_.set(lane, one.must_look() ? 1.0 : 0.0);
     if (one.steps().asked()) asked.set(lane, 1.0);
     if (one.ended()) return Next::ended;
     if (changed) return Next::begins_anew;
@@ -528,10 +544,11 @@ class LaneDriver {
       std::apply([&](const auto&... event) { (one(event), ...); }, settings_.events);
     };
     sample(true, sizes_.t(), x_);
+    std::conditional_t<is_small, WideX, WideX&> x = slope_;  // of its own: what no guard reads is not computed
     for (std::size_t k = 1; k + 1 < bernstein::count; ++k) {
       const Wide theta(bernstein::nodes[k]);
-      polynomial_(theta, slope_);
-      sample(false, sizes_.t() + theta * sizes_.h(), slope_);
+      polynomial_(theta, x);
+      sample(false, sizes_.t() + theta * sizes_.h(), x);
     }
     sample(false, sizes_.end(), x_new_);
     typename Wide::Mask near(false);
@@ -557,8 +574,10 @@ class LaneDriver {
   Interpolant<WideX, M::dense_degree> polynomial_;
   LaneSizes<W> sizes_;
   LaneTolerance<W> tolerance_;
-  Wide fresh_{0.0};  // 1 where work_ has f at the beginning of the next step
-  Wide square_;      // of the error of the step
+  Wide fresh_{0.0};      // 1 where work_ has f at the beginning of the next step
+  Wide must_look_{0.0};  // 1 where the run has to be asked at each step
+  Wide skipped_{0.0};    // 1 where the run has not been told of all its steps
+  Wide square_;          // of the error of the step
   bool has_square_ = false;
   std::vector<Run> runs_;
   std::vector<PairOfLane<M, X>> pairs_;  // where the method is part of one
