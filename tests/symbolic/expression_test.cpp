@@ -1,7 +1,15 @@
 // Expressions: equal ones are one node, simplification preserves values, printed text parses to the same expression.
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <limits>
+#include <random>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -29,6 +37,42 @@ TEST_F(Expression, EqualExpressionsAreOneNode) {
   EXPECT_NE(g.subtract(x, y), g.subtract(y, x));
   EXPECT_EQ(g.subtract(x, y), g.negate(g.subtract(y, x)));
   EXPECT_EQ(text(g.subtract(x, y)) + text(g.subtract(y, x)), "x - yy - x");
+}
+
+// Whatever is made in whatever order: no two nodes are the same operation on the same arguments.
+TEST_F(Expression, NoExpressionIsThereTwice) {
+  std::mt19937 random(5);
+  std::vector<NodeId> nodes{t, x, y, k};
+  for (int i = 0; i < 20'000; ++i) {
+    const auto any = [&] { return nodes[nodes.size() - 1 - random() % std::min<std::size_t>(nodes.size(), 60)]; };
+    NodeId made;
+    switch (random() % 10) {
+      case 0:
+        made = g.constant(random() % 50);
+        break;
+      case 1:
+        made = g.variable(random() % 90);
+        break;
+      case 2:
+        made = g.select(g.less(any(), any()), any(), any());
+        break;
+      case 3:
+        made = g.apply(random() % 2 == 0 ? Op::sine : Op::negate, any());
+        break;
+      default:
+        constexpr Op all[] = {Op::add, Op::subtract, Op::multiply, Op::divide, Op::minimum, Op::arc_tangent2};
+        made = g.apply(all[random() % std::size(all)], any(), any());
+    }
+    nodes.push_back(made);
+  }
+  std::set<std::tuple<Op, std::uint32_t, NodeId, NodeId, NodeId, std::uint64_t>> seen;
+  for (std::uint32_t i = 0; i < g.size(); ++i) {
+    const Node& node = g[NodeId{i}];
+    EXPECT_TRUE(
+        seen.emplace(node.op, node.number, node.a, node.b, node.c, std::bit_cast<std::uint64_t>(node.value)).second)
+        << i << " is there already: " << name(node.op);
+  }
+  EXPECT_GT(g.size(), 5000u);
 }
 
 TEST_F(Expression, NeutralElementsVanish) {

@@ -50,6 +50,24 @@ bool same(const Node& p, const Node& q) {
          std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
 }
 
+/// The bit in Node::uses of the arguments of an operation.
+std::uint8_t kind_of(Op op) {
+  switch (op) {
+    case Op::add:
+      return 1U;
+    case Op::subtract:
+      return 2U;
+    case Op::multiply:
+      return 4U;
+    case Op::divide:
+      return 8U;
+    case Op::negate:
+      return 16U;
+    default:
+      return arity(op) == 1 ? 32U : 64U;
+  }
+}
+
 /// The empty slot for a node, or the one where `is_it` says that the node in it is equal.
 template <class IsIt>
 std::size_t slot_of(const Node& node, const std::vector<std::uint32_t>& slots, const IsIt& is_it) {
@@ -69,21 +87,72 @@ std::size_t slot_of(const Node& node, const std::vector<std::uint32_t>& slots, c
 
 }  // namespace
 
-Graph::Graph() : slots_(64, empty) {}
+Graph::Graph() : leaves_{std::vector<std::uint32_t>(16, empty)}, operations_{std::vector<std::uint32_t>(64, empty)} {}
 
-void Graph::grow() {
-  slots_.assign(2 * slots_.size(), empty);
+/// Doubles an index that becomes too full by one node more.
+void Graph::make_room(Index& index) {
+  if (2 * index.count < index.slots.size()) return;
+  const std::vector<std::uint32_t> entered = std::exchange(index.slots, {});
+  index.slots.assign(2 * entered.size(), empty);
+  index.count = 0;
+  for (const std::uint32_t node : entered)
+    if (node != empty) enter(index, node);
+}
+
+/// A node that is not there yet.
+void Graph::enter(Index& index, std::uint32_t node) {
   const auto is_another = [](std::uint32_t) { return false; };
-  for (std::uint32_t i = 0; i < nodes_.size(); ++i) slots_[slot_of(nodes_[i], slots_, is_another)] = i;
+  index.slots[slot_of(nodes_[node], index.slots, is_another)] = node;
+  ++index.count;
+}
+
+/// Those that were made since the last time. They may be millions, so their slots are asked of the memory some time
+/// before they are needed.
+void Graph::enter_operations() {
+  const std::size_t wanted = 2 * (operations_.count + nodes_.size() - entered_);
+  if (wanted >= operations_.slots.size()) {
+    operations_ = {};
+    operations_.slots.assign(std::bit_ceil(wanted + 1), empty);
+    entered_ = 0;
+  }
+  constexpr std::size_t ahead = 16;
+  for (; entered_ < nodes_.size(); ++entered_) {
+    if (entered_ + ahead < nodes_.size()) {
+      const Home coming = home(nodes_[entered_ + ahead]);
+      __builtin_prefetch(&operations_.slots[(coming.shape + coming.place) & (operations_.slots.size() - 1)], 1);
+    }
+    if (arity(nodes_[entered_].op) > 0) enter(operations_, entered_);
+  }
+}
+
+void Graph::reserve(std::size_t nodes) {
+  nodes_.reserve(nodes);
+}
+
+NodeId Graph::append(const Node& node) {
+  nodes_.push_back(node);
+  return NodeId{static_cast<std::uint32_t>(nodes_.size() - 1)};
 }
 
 NodeId Graph::intern(const Node& node) {
-  if (2 * nodes_.size() >= slots_.size()) grow();
-  const std::size_t slot = slot_of(node, slots_, [&](std::uint32_t i) { return same(nodes_[i], node); });
-  if (slots_[slot] != empty) return NodeId{slots_[slot]};
-  slots_[slot] = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back(node);
-  return NodeId{slots_[slot]};
+  if (arity(node.op) > 0) return intern_operation(node);
+  make_room(leaves_);
+  const std::size_t slot = slot_of(node, leaves_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
+  if (leaves_.slots[slot] != empty) return NodeId{leaves_.slots[slot]};
+  ++leaves_.count;
+  return NodeId{leaves_.slots[slot] = append(node).index};
+}
+
+NodeId Graph::intern_operation(const Node& node) {
+  const std::uint8_t kind = kind_of(node.op);
+  const Arguments all = arguments(node);
+  if (std::ranges::all_of(all, [&](NodeId a) { return (nodes_[a.index].uses & kind) != 0; })) {
+    enter_operations();
+    const std::size_t slot = slot_of(node, operations_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
+    if (operations_.slots[slot] != empty) return NodeId{operations_.slots[slot]};
+  }
+  for (const NodeId a : all) nodes_[a.index].uses |= kind;
+  return append(node);
 }
 
 NodeId Graph::constant(double value) {

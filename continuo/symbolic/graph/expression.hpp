@@ -36,12 +36,15 @@ struct Node {
   Op op = Op::constant;
   bool finite = false;       // it cannot be infinite or NaN where the variables are not
   bool corners = false;      // it, or what it is made of, has jumps or kinks that no `smooth` stands around
+  std::uint8_t uses = 0;     // the kinds of operations it is an argument of, a bit for each: see Graph
   std::uint32_t number = 0;  // of a variable, or of a table
   NodeId a{}, b{}, c{};      // as many as arity(op)
   double value = 0;          // of a constant
 };
 
-/// Owns the nodes. The makers simplify as they build: constants are folded, `x + 0`, `1*x`, `--x` and their like
+/// Owns the nodes. An operation is looked for among those that are there only where each of its arguments has a use of
+/// its kind already: the nodes of a large family are made one after the other, and most are known to be new.
+/// The makers simplify as they build: constants are folded, `x + 0`, `1*x`, `--x` and their like
 /// vanish, `x^2` becomes `x*x`. Only what holds for every number is used: `0*x` is 0 where x cannot be infinite.
 class Graph {
  public:
@@ -67,6 +70,8 @@ class Graph {
   [[nodiscard]] NodeId greater(NodeId a, NodeId b) { return apply(Op::less, b, a); }
   [[nodiscard]] NodeId greater_equal(NodeId a, NodeId b) { return apply(Op::less_equal, b, a); }
 
+  /// So many nodes are to be expected.
+  void reserve(std::size_t nodes);
   const Node& operator[](NodeId id) const { return nodes_[id.index]; }
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
 
@@ -76,11 +81,22 @@ class Graph {
 
  private:
   friend struct Simplifier;
+  /// Nodes by what they are: open addressing over nodes_, a power of two in size.
+  struct Index {
+    std::vector<std::uint32_t> slots;
+    std::size_t count = 0;  // of the nodes in it
+  };
+
   [[nodiscard]] NodeId intern(const Node& node);
-  void grow();
+  [[nodiscard]] NodeId intern_operation(const Node& node);
+  [[nodiscard]] NodeId append(const Node& node);
+  void make_room(Index& index);
+  void enter(Index& index, std::uint32_t node);
+  void enter_operations();
 
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> slots_;  // open addressing over nodes_, a power of two in size
+  Index leaves_, operations_;  // constants and variables; the others
+  std::uint32_t entered_ = 0;  // the operations among the nodes before this one are in their index
 };
 
 /// The arguments of a node, arity(op) of them: `for (const NodeId a : arguments(node))`.
