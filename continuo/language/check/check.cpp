@@ -43,6 +43,8 @@ void declare(const ast::Model& tree, Declarations& declared, Expressions& expres
 /// From the lists to the model: all expressions as nodes, with their units.
 void translate(const Declarations& declared, Expressions& expressions, WorldAtWork& world, Model& model) {
   Workspace& workspace = expressions.workspace;
+  constexpr std::size_t nodes_of_member = 6;  // or more
+  workspace.graph.reserve(nodes_of_member * workspace.written_out);
   store(make_parameters(expressions), model);  // and their values, to the registers of the workspace
   check_overrides(model.parameters, expressions);
   model.inputs = make_inputs(expressions);

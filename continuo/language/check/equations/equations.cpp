@@ -39,20 +39,21 @@ std::optional<Value> Equations::explicit_left(const ast::Equation& equation, Sco
 /// Both sides brought to one unit: left - right = 0, and what it holds.
 EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) {
   Scope scope = equation.scope;
-  std::vector<std::uint32_t> on_left, held;
-  scope.highest = &on_left;
-  const std::optional<Value> highest = explicit_left(*equation.text, scope, on_left);
+  on_left_.clear();
+  held_.clear();
+  scope.highest = &on_left_;
+  const std::optional<Value> highest = explicit_left(*equation.text, scope, on_left_);
   Term left{equation.text->left, highest ? *highest : expressions_.translator.translate(equation.text->left, scope)};
-  scope.highest = &held;
+  scope.highest = &held_;
   Term right{equation.text->right, right_sides_.translate(expressions_, equation.text->right, scope)};
   EquationAtWork work;
   work.span = equation.span;
-  const bool is_explicit = highest && held.empty();
-  if (highest && !is_explicit) left.value.node = graph_.variable(highest_begin + on_left.front());
-  held.insert(held.end(), on_left.begin(), on_left.end());
-  std::ranges::sort(held);
-  held.erase(std::unique(held.begin(), held.end()), held.end());
-  work.holds = std::move(held);
+  const bool is_explicit = highest && held_.empty();
+  if (highest && !is_explicit) left.value.node = graph_.variable(highest_begin + on_left_.front());
+  held_.insert(held_.end(), on_left_.begin(), on_left_.end());
+  std::ranges::sort(held_);
+  held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
+  work.holds.assign(held_.begin(), held_.end());
   if (!expressions_.operations.want_numbers(left, right) ||
       !expressions_.translator.align(left, right, equation.span, scope)) {
     work.bad = true;

@@ -54,7 +54,8 @@ class Equations {
   const Model& model_;
   EquationCounts counts_;
   FamilyTranslator right_sides_;
-  std::vector<double> start_values_;  // of all variables, once the states have theirs; empty until asked for
+  std::vector<double> start_values_;           // of all variables, once the states have theirs; empty until asked for
+  std::vector<std::uint32_t> on_left_, held_;  // by the equation that is read: not allocated for each
   SolvedEquations made_;
 };
 

@@ -1,5 +1,6 @@
 // Reads a text into parts that say on which indices they depend, and makes those again whose indices have changed.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <continuo/language/check/expressions/expressions.hpp>
@@ -133,8 +134,8 @@ std::uint64_t FamilyTranslator::stamp_of(std::uint32_t depends) const {
 
 // -- reading ----------------------------------------------------------------------------------------------------------
 
-FamilyTranslator::Part FamilyTranslator::add(const Node& node) {
-  nodes_.push_back(node);
+FamilyTranslator::Part FamilyTranslator::add(Node node) {
+  nodes_.push_back(std::move(node));
   return static_cast<Part>(nodes_.size() - 1);
 }
 
@@ -144,9 +145,9 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
   if (!mentions.index && !mentions.indexed_name && !mentions.other) {
     const Value value = expressions.translator.translate(text, scope);
     if (value.bad || value.condition) return std::nullopt;
-    return add({.kind = Node::Kind::fixed, .node = value.node, .measured = value.measured});
+    return add({.kind = Node::Kind::fixed, .is_of_numbers = true, .node = value.node, .measured = value.measured});
   }
-  if (const auto* name = std::get_if<ast::Name>(&text.node)) return read(expressions, *name);
+  if (const auto* name = std::get_if<ast::Name>(&text.node)) return read(expressions, *name, scope);
   if (const auto* binary = std::get_if<ast::Binary>(&text.node)) return read(expressions, *binary, scope);
   if (const auto* call = std::get_if<ast::Call>(&text.node)) return read(expressions, *call, scope);
   if (const auto* choice = std::get_if<ast::Conditional>(&text.node)) return read(expressions, *choice, scope);
@@ -154,7 +155,10 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
   if (!unary || unary->op != ast::UnaryOperator::negate) return std::nullopt;
   const auto operand = read(expressions, *unary->operand, scope);
   if (!operand) return std::nullopt;
-  return add({.kind = Node::Kind::negation, .depends = nodes_[*operand].depends, .parts = {*operand}});
+  return add({.kind = Node::Kind::negation,
+              .is_of_numbers = nodes_[*operand].is_of_numbers,
+              .depends = nodes_[*operand].depends,
+              .parts = {*operand}});
 }
 
 std::optional<std::size_t> FamilyTranslator::index_called(const ast::Name& name) const {
@@ -163,9 +167,10 @@ std::optional<std::size_t> FamilyTranslator::index_called(const ast::Name& name)
   return static_cast<std::size_t>(found - names_.begin());
 }
 
-std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions&, const ast::Name& name) {
+std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& expressions, const ast::Name& name,
+                                                             Scope& scope) {
   if (const auto index = index_called(name))
-    return add({.kind = Node::Kind::index, .depends = 1u << *index, .number = *index});
+    return add({.kind = Node::Kind::index, .is_of_numbers = true, .depends = 1u << *index, .number = *index});
   if (name.indices.empty() || !name.member.empty()) return std::nullopt;
   Node node{.kind = Node::Kind::name, .name = &name};
   for (std::size_t d = 0; d < names_.size(); ++d) {
@@ -175,7 +180,22 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions&,
       if (mentions.index) node.depends |= 1u << d;
     }
   }
-  return add(node);
+  node.places = read_places(expressions, name, scope);
+  if (!node.places.empty()) node.members = expressions.workspace.declared.symbols.members(name.text, scope.mode);
+  if (node.members) node.number = states_of(*node.members, name.primes);
+  return add(std::move(node));
+}
+
+/// The indices of a name, or nothing where one of them is more than a sum of whole numbers.
+std::vector<FamilyTranslator::Sum> FamilyTranslator::read_places(const Expressions& expressions, const ast::Name& name,
+                                                                 Scope& scope) {
+  std::vector<Sum> places;
+  for (const ast::Expression& index : name.indices) {
+    const auto place = read_sum(expressions, index, scope);
+    if (!place || place->number != std::floor(place->number) || places.size() == IndexValues::most) return {};
+    places.push_back(*place);
+  }
+  return places;
 }
 
 std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& expressions, const ast::Binary& text,
@@ -187,6 +207,7 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
   const auto left = read(expressions, *text.left, scope), right = left ? read(expressions, *text.right, scope) : left;
   if (!right) return std::nullopt;
   return add({.kind = Node::Kind::operation,
+              .is_of_numbers = nodes_[*left].is_of_numbers && nodes_[*right].is_of_numbers,
               .op = *op,
               .depends = nodes_[*left].depends | nodes_[*right].depends,
               .parts = {*left, *right}});
@@ -198,14 +219,15 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
   const std::size_t count = text.arguments.size();
   if (!function || function->units == Function::Units::power || count < 1 || count > 2) return std::nullopt;
   if (!text.callee.indices.empty() || text.callee.primes > 0 || !text.callee.member.empty()) return std::nullopt;
-  Node node{.kind = Node::Kind::function, .function = text.callee.text, .arguments = count};
+  Node node{.kind = Node::Kind::function, .is_of_numbers = true, .function = text.callee.text, .arguments = count};
   for (std::size_t k = 0; k < count; ++k) {
     const auto part = read(expressions, text.arguments[k], scope);
     if (!part) return std::nullopt;
     node.parts[k] = *part;
     node.depends |= nodes_[*part].depends;
+    node.is_of_numbers = node.is_of_numbers && nodes_[*part].is_of_numbers;
   }
-  return add(node);
+  return add(std::move(node));
 }
 
 std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& expressions,
@@ -227,13 +249,17 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
     for (std::size_t d = 0; d < names_.size(); ++d)
       if (side.factors[d] != 0) node.depends |= 1u << d;
   node.depends |= nodes_[*yes].depends | nodes_[*no].depends;
-  return add(node);
+  return add(std::move(node));
 }
 
 /// `i`, `i + 1`, `N - i` with numbers and parameters that are fixed while the model is what it is.
 std::optional<FamilyTranslator::Sum> FamilyTranslator::read_sum(const Expressions& expressions,
                                                                 const ast::Expression& text, Scope& scope) {
   Sum sum;
+  if (const auto* number = std::get_if<ast::Number>(&text.node)) {  // which makes no node
+    sum.number = number->value;
+    return sum;
+  }
   const Mentions mentions = mentions_of(text, names_);
   if (mentions.indexed_name || mentions.other) return std::nullopt;
   if (!mentions.index) {
@@ -276,12 +302,27 @@ NodeId FamilyTranslator::make(const Expressions& expressions, Part part, Scope& 
   const std::uint64_t stamp = stamp_of(node.depends);
   if (node.stamp != stamp) {
     const std::uint64_t before = std::exchange(choices_, 0);
-    node.node = make_anew(expressions, node, scope);
+    node.node = node.is_of_numbers && std::has_single_bit(node.depends) ? make_by_value(expressions, node, scope)
+                                                                        : make_anew(expressions, node, scope);
     node.stamp = node.node.valid() ? stamp : 0;
     node.choices = std::exchange(choices_, before);
   }
   choices_ |= node.choices;
   return node.node;
+}
+
+/// What one index alone decides is made once for each of its values, however often the other indices go round.
+NodeId FamilyTranslator::make_by_value(const Expressions& expressions, Node& node, Scope& scope) {
+  constexpr long most = 1'000'000;
+  const long value = values_[static_cast<std::size_t>(std::countr_zero(node.depends))];
+  if (node.by_value.empty()) node.first_value = value;
+  const long place = value - node.first_value;
+  if (place < 0 || place >= most) return make_anew(expressions, node, scope);
+  if (static_cast<std::size_t>(place) >= node.by_value.size())
+    node.by_value.resize(static_cast<std::size_t>(place) + 1);
+  NodeId& made = node.by_value[static_cast<std::size_t>(place)];
+  if (!made.valid()) made = make_anew(expressions, node, scope);
+  return made;
 }
 
 NodeId FamilyTranslator::make_anew(const Expressions& expressions, Node& node, Scope& scope) {
@@ -298,11 +339,49 @@ NodeId FamilyTranslator::make_anew(const Expressions& expressions, Node& node, S
 }
 
 /// Of another unit than that of the members before it is another case.
-NodeId FamilyTranslator::make_name(const Expressions& expressions, Node& node, Scope& scope) const {
+NodeId FamilyTranslator::make_name(const Expressions& expressions, Node& node, Scope& scope) {
+  if (const NodeId state = find_state(expressions, node, scope); state.valid()) return state;
   const Value value = expressions.lookup.lookup(*node.name, scope);
   if (value.bad || value.condition) return {};
   if (!node.measured) node.measured = value.measured;
   return are_same(*node.measured, value.measured) ? value.node : NodeId{};
+}
+
+/// A state by the place of its indices among the members of its family; not valid where the lookup has more to say.
+NodeId FamilyTranslator::find_state(const Expressions& expressions, Node& node, Scope& scope) {
+  if (!node.members || scope.is_constant() || scope.moment) return {};
+  IndexValues indices;
+  for (const Sum& place : node.places) indices.push_back(static_cast<long>(value_of(place)));
+  const std::uint32_t number = node.members->number_of(indices);
+  if (number == Members::none) return {};
+  States& states = states_[node.number];
+  if (number >= states.nodes.size()) states.nodes.resize(number + std::size_t{1});
+  NodeId& state = states.nodes[number];
+  if (!state.valid()) state = new_state(expressions, node, number, scope);
+  if (!state.valid()) return {};
+  if (!node.measured) node.measured = states.measured;
+  return are_same(*node.measured, *states.measured) ? state : NodeId{};
+}
+
+/// One that no name has asked for yet; not valid where it is none, or of another unit than the others.
+NodeId FamilyTranslator::new_state(const Expressions& expressions, const Node& node, std::uint32_t number,
+                                   Scope& scope) {
+  const Symbol& symbol = (*node.members)[number];
+  if (symbol.kind != Symbol::Kind::base) return {};
+  if (node.name->primes >= expressions.workspace.declared.bases[symbol.index].order) return {};
+  const Value value = expressions.lookup.derivative(*node.name, symbol.index, scope);
+  States& states = states_[node.number];
+  if (!states.measured) states.measured = value.measured;
+  return are_same(*states.measured, value.measured) ? value.node : NodeId{};
+}
+
+/// The states of this family and with so many primes.
+std::size_t FamilyTranslator::states_of(const Members& members, int primes) {
+  const auto known = std::ranges::find_if(
+      states_, [&](const States& states) { return states.members == &members && states.primes == primes; });
+  const auto number = static_cast<std::size_t>(known - states_.begin());
+  if (known == states_.end()) states_.push_back({.members = &members, .primes = primes});
+  return number;
 }
 
 double FamilyTranslator::value_of(const Sum& sum) const {

@@ -14,6 +14,7 @@
 namespace continuo::model::detail {
 
 class Expressions;
+class Members;
 
 class FamilyTranslator {
  public:
@@ -32,6 +33,7 @@ class FamilyTranslator {
   struct Node {
     enum class Kind : unsigned char { fixed, index, name, negation, operation, function, choice };
     Kind kind = Kind::fixed;
+    bool is_of_numbers = false;  // it has neither names with indices nor choices
     Op op{};
     ast::BinaryOperator comparison{};  // of `choice`
     std::uint32_t depends = 0;         // on indices: bit d is that of the index d families out
@@ -39,12 +41,23 @@ class FamilyTranslator {
     std::uint64_t choices = 0;         // made on the way
     NodeId node{};
     std::array<Part, 2> parts{};
-    std::size_t number = 0;  // of an index, of a choice
+    std::size_t number = 0;  // of an index, of a choice, of the states of a name
     const ast::Name* name = nullptr;
     std::optional<Measured> measured{};  // of a name
     std::string_view function{};
     std::size_t arguments = 0;
     std::array<Sum, 2> sides{};  // of `choice`
+    std::vector<Sum> places{};   // the indices of a name, where each is a sum
+    const Members* members = nullptr;
+    std::vector<NodeId> by_value{};  // of what one index decides: from `first_value` on
+    long first_value = 0;
+  };
+  /// The states of a family that names have asked for, by the number of the member; all of one unit.
+  struct States {
+    const Members* members;
+    int primes;
+    std::optional<Measured> measured{};
+    std::vector<NodeId> nodes{};
   };
   /// Which branches a member takes, and the unit of what comes out; checked against the translator once.
   struct Path {
@@ -60,18 +73,23 @@ class FamilyTranslator {
 
   // Reading the text: nothing where it has what is not provided for.
   [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Expression& text, Scope& scope);
-  [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Name& name);
+  [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Name& name, Scope& scope);
+  [[nodiscard]] std::vector<Sum> read_places(const Expressions& expressions, const ast::Name& name, Scope& scope);
   [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Binary& text, Scope& scope);
   [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Call& text, Scope& scope);
   [[nodiscard]] std::optional<Part> read(const Expressions& expressions, const ast::Conditional& text, Scope& scope);
   [[nodiscard]] std::optional<Sum> read_sum(const Expressions& expressions, const ast::Expression& text, Scope& scope);
   [[nodiscard]] std::optional<std::size_t> index_called(const ast::Name& name) const;
-  [[nodiscard]] Part add(const Node& node);
+  [[nodiscard]] Part add(Node node);
 
   // One member: an invalid node where it is another case than the members before.
   [[nodiscard]] NodeId make(const Expressions& expressions, Part part, Scope& scope);
   [[nodiscard]] NodeId make_anew(const Expressions& expressions, Node& node, Scope& scope);
-  [[nodiscard]] NodeId make_name(const Expressions& expressions, Node& node, Scope& scope) const;
+  [[nodiscard]] NodeId make_by_value(const Expressions& expressions, Node& node, Scope& scope);
+  [[nodiscard]] NodeId make_name(const Expressions& expressions, Node& node, Scope& scope);
+  [[nodiscard]] NodeId find_state(const Expressions& expressions, Node& node, Scope& scope);
+  [[nodiscard]] NodeId new_state(const Expressions& expressions, const Node& node, std::uint32_t number, Scope& scope);
+  [[nodiscard]] std::size_t states_of(const Members& members, int primes);
   [[nodiscard]] bool holds(const Node& choice) const;
   [[nodiscard]] double value_of(const Sum& sum) const;
 
@@ -83,6 +101,7 @@ class FamilyTranslator {
   std::array<long, most_indices> values_{};
   std::array<std::uint64_t, most_indices> changes_{};  // of each value so far
   std::vector<Node> nodes_;
+  std::vector<States> states_;
   Part root_ = 0;
   std::size_t choice_count_ = 0;
   std::uint64_t choices_ = 0;  // of the member at hand

@@ -32,12 +32,17 @@ void next_cell(const std::vector<long>& low, const std::vector<long>& size, std:
 
 }  // namespace
 
-const Symbol* Members::find(std::span<const long> indices) const {
+std::uint32_t Members::number_of(std::span<const long> indices) const {
   const std::size_t place = box_.cells.empty() ? outside : place_in(box_.low, box_.size, indices);
-  if (place != outside && box_.cells[place] != none) return &symbols_[box_.cells[place]];
-  if (scattered_.empty()) return nullptr;
+  if (place != outside && box_.cells[place] != none) return box_.cells[place];
+  if (scattered_.empty()) return none;
   const auto found = scattered_.find({indices.begin(), indices.end()});
-  return found == scattered_.end() ? nullptr : &symbols_[found->second];
+  return found == scattered_.end() ? none : found->second;
+}
+
+const Symbol* Members::find(std::span<const long> indices) const {
+  const std::uint32_t number = number_of(indices);
+  return number == none ? nullptr : &symbols_[number];
 }
 
 std::pair<const Symbol*, bool> Members::add(std::span<const long> indices, const Symbol& symbol) {

@@ -19,6 +19,10 @@ class Members {
   std::pair<const Symbol*, bool> add(std::span<const long> indices, const Symbol& symbol);
   /// Null where there is none.
   [[nodiscard]] const Symbol* find(std::span<const long> indices) const;
+  /// The members are numbered as they were added. `none` where there is none with these indices.
+  static constexpr std::uint32_t none = 0xffffffff;
+  [[nodiscard]] std::uint32_t number_of(std::span<const long> indices) const;
+  [[nodiscard]] const Symbol& operator[](std::uint32_t number) const { return symbols_[number]; }
   /// The indices of all members.
   [[nodiscard]] std::vector<std::vector<long>> all() const;
 
@@ -27,7 +31,6 @@ class Members {
     std::vector<long> low{}, size{};     // of each index
     std::vector<std::uint32_t> cells{};  // the last index runs fastest
   };
-  static constexpr std::uint32_t none = 0xffffffff;
 
   [[nodiscard]] std::uint32_t& cell_for(std::span<const long> indices);
   [[nodiscard]] bool widen(std::span<const long> indices);

@@ -37,13 +37,16 @@ std::string_view meaning_of_its_own(std::string_view name) {
 bool Symbols::declare(std::string_view name, std::span<const long> indices, int mode, const Symbol& symbol,
                       Report& report) {
   const std::size_t place = place_of(mode);
-  if (names_.size() <= place) names_.resize(place + 1);
-  auto family = names_[place].find(name);
-  if (family == names_[place].end()) {
-    if (!is_free_name(name, symbol.span, report)) return false;
-    family = names_[place].try_emplace(std::string(name)).first;
+  if (names_.size() <= place) {
+    names_.resize(place + 1);
+    recent_ = {};
   }
-  const auto [known, is_new] = family->second.add(indices, symbol);
+  auto* family = const_cast<Members*>(members_in(place, name));  // which are those of this
+  if (!family) {
+    if (!is_free_name(name, symbol.span, report)) return false;
+    family = &names_[place][std::string(name)];
+  }
+  const auto [known, is_new] = family->add(indices, symbol);
   if (!is_new) {
     if (auto* said = report.fail("E211", symbol.span, fmt::format("`{}` is defined twice", indexed(name, indices)),
                                  "again here")) {
@@ -66,17 +69,29 @@ bool Symbols::declare(std::string_view name, std::span<const long> indices, int 
   return true;
 }
 
-const Symbol* Symbols::find_in(int mode, const IndexedName& name) const {
-  const std::size_t place = place_of(mode);
+const Members* Symbols::members_in(std::size_t place, std::string_view name) const {
+  if (recent_.members && recent_.place == place && recent_.name == name) return recent_.members;
   if (place >= names_.size()) return nullptr;
-  const auto family = names_[place].find(name.name);
-  return family == names_[place].end() ? nullptr : family->second.find(name.indices);
+  const auto family = names_[place].find(name);
+  if (family == names_[place].end()) return nullptr;
+  recent_ = {place, family->first, &family->second};
+  return recent_.members;
+}
+
+const Members* Symbols::members(std::string_view name, int mode) const {
+  const Members* const of_model = members_in(0, name);
+  const Members* const of_mode = mode == Scope::no_mode ? nullptr : members_in(place_of(mode), name);
+  return of_model && of_mode ? nullptr : of_model ? of_model : of_mode;
 }
 
 const Symbol* Symbols::find(const IndexedName& name, int mode) const {
   if (!name.member.empty()) return find_of_world(name.text());
-  const Symbol* local = mode == Scope::no_mode ? nullptr : find_in(mode, name);
-  return local ? local : find_in(Scope::no_mode, name);
+  const auto find_in = [&](std::size_t place) {
+    const Members* const family = members_in(place, name.name);
+    return family ? family->find(name.indices) : nullptr;
+  };
+  const Symbol* local = mode == Scope::no_mode ? nullptr : find_in(place_of(mode));
+  return local ? local : find_in(0);
 }
 
 const Symbol* Symbols::find_of_world(const std::string& name) const {

@@ -33,6 +33,8 @@ class Symbols {
   void add(const std::string& name, const Symbol& symbol) { made_by_world_.try_emplace(name, symbol); }
   /// Null where there is none.
   [[nodiscard]] const Symbol* find(const IndexedName& name, int mode) const;
+  /// All members of a name where it is declared in the model or in this mode, and not in both; otherwise null.
+  [[nodiscard]] const Members* members(std::string_view name, int mode) const;
   /// Of the world's own making: `ball.x`.
   [[nodiscard]] const Symbol* find_of_world(const std::string& name) const;
   [[nodiscard]] const FamilyShape* family(std::string_view name) const;
@@ -49,8 +51,16 @@ class Symbols {
   };
   using Names = std::unordered_map<std::string, Members, Hash, std::equal_to<>>;
 
-  [[nodiscard]] const Symbol* find_in(int mode, const IndexedName& name) const;
+  [[nodiscard]] const Members* members_in(std::size_t place, std::string_view name) const;
 
+  /// The family that was asked for last: the members of a grid ask for theirs one after the other.
+  struct Recent {
+    std::size_t place = 0;
+    std::string_view name{};
+    const Members* members = nullptr;
+  };
+
+  mutable Recent recent_;
   std::vector<Names> names_;  // of the model, then of its modes; a name without indices is its family's only member
   std::map<std::string, FamilyShape, std::less<>> families_;
   std::unordered_map<std::string, Symbol> made_by_world_;

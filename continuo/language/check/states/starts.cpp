@@ -94,6 +94,18 @@ class StartSolver {
   std::vector<NodeId> images_;      // of the nodes of the graph
 };
 
+/// Of each node of the graph, whether it has variables in it that `expression_of` may give something for.
+template <class IsOpen>
+std::vector<bool> open_nodes(const Graph& graph, const IsOpen& is_open) {
+  std::vector<bool> open(graph.size());
+  for (std::uint32_t i = 0; i < graph.size(); ++i) {
+    const Node& node = graph[NodeId{i}];
+    open[i] = node.op == Op::variable ? is_open(node.number)
+                                      : std::ranges::any_of(arguments(node), [&](NodeId a) { return open[a.index]; });
+  }
+  return open;
+}
+
 void refuse_in_start(Expressions& expressions, std::uint32_t variable, std::string_view why, Span span) {
   expressions.report.fail(
       "E222", span, fmt::format("this start cannot depend on `{}`", name_of_variable(expressions.workspace, variable)),
@@ -145,11 +157,16 @@ void solve_starts(Expressions& expressions, std::vector<State>& states, double s
     report_circle(expressions, states, start_time, variables);
   };
   StartSolver solver(expressions.workspace.graph, expression_of, circle);
+  const std::vector<bool> is_open = open_nodes(expressions.workspace.graph, [&](std::uint32_t variable) {
+    return (variable >= layout.states && variable < layout.parameters) || variable >= layout.samples;
+  });
   std::vector<std::pair<State*, NodeId>> solved;  // put in their places when nobody looks for what was written there
   for (State& state : states) {
     if (state.in_world || !state.initial.valid() || expressions.workspace.graph.value(state.initial)) continue;
+    const NodeId variable = expressions.workspace.graph.variable(state.variable);
+    if (!is_open[state.initial.index]) continue;
     span = state.span;
-    solved.emplace_back(&state, solver.solve(expressions.workspace.graph.variable(state.variable)));
+    solved.emplace_back(&state, solver.solve(variable));
   }
   for (const auto& [state, start] : solved) state->initial = start;
   expressions.workspace.layout.size = expressions.workspace.layout.samples;
