@@ -104,6 +104,20 @@ class Writer {
     return fmt::format("({})", fmt::join(numbers, ", "));
   }
 
+  std::string shape(const ShapeDescription& shape, int dimension, std::span<const double> variables) const {
+    switch (shape.kind) {
+      case ShapeDescription::Kind::capsule:
+        return "capsule " + number(shape.length, variables) + " radius " + number(shape.radius, variables);
+      case ShapeDescription::Kind::box:
+        return "box " + point({shape.size.begin(), shape.size.begin() + dimension}, variables);
+      case ShapeDescription::Kind::hull:
+        return fmt::format("hull of {} points", shape.corners.size());
+      case ShapeDescription::Kind::ball:
+        break;
+    }
+    return "radius " + number(shape.radius, variables);
+  }
+
   void world(const WorldDescription& world) {
     const std::vector<double> start = start_values(model_);
     const auto axes = static_cast<std::ptrdiff_t>(world.dimension);
@@ -122,8 +136,15 @@ class Writer {
       std::vector<NodeId> at;
       for (int axis = 0; axis < world.dimension; ++axis)
         at.push_back(model_.states[body.first_state + 2 * static_cast<std::size_t>(axis)].initial);
-      return {body.name, "at " + point(at, start), "radius " + number(body.radius, start),
-              body.fixed ? "fixed" : "mass " + number(body.mass, start)};
+      return {body.name, "at " + point(at, start), shape(body.shape, world.dimension, start),
+              body.driven  ? "driven"
+              : body.fixed ? "fixed"
+                           : "mass " + number(body.mass, start)};
+    });
+    section("Joints", world.joints, [&](const JointDescription& joint) -> Row {
+      return {joint.is_named ? joint.name : "", joint.kind,
+              world.bodies[joint.first].name + " to " +
+                  (joint.second == no_body ? "the world" : world.bodies[joint.second].name)};
     });
     section("Walls", world.walls, [&](const WallDescription& wall) -> Row {
       return {wall.name, of(wall.normal), "at " + number(wall.offset, start), wall.thin ? "thin" : ""};

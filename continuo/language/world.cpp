@@ -1,5 +1,7 @@
 // continuo/language/world.cpp
-// Names of what a world measures, and of the methods that move it.
+// Names of what a world and its joints measure, and of the methods that move it.
+#include <algorithm>
+
 #include <continuo/language/world.hpp>
 
 namespace continuo::model {
@@ -16,10 +18,36 @@ std::vector<std::string> world_integrators() {
           "explicit_euler"};
 }
 
+std::vector<std::string> joint_measures(std::string_view kind, int dimension, bool is_named, bool has_motor) {
+  std::vector<std::string> names;
+  if (is_named && kind == "hinge") names.emplace_back("angle");
+  if (is_named && (kind == "slider" || kind == "distance" || kind == "rope" || kind == "wheel"))
+    names.emplace_back("length");
+  names.insert(names.end(), {"force_x", "force_y"});
+  if (dimension == 2) {
+    names.emplace_back("torque");
+  } else {
+    names.insert(names.end(), {"force_z", "torque_x", "torque_y", "torque_z"});
+  }
+  if (has_motor) names.emplace_back(kind == "slider" ? "motor_force" : "motor_torque");
+  return names;
+}
+
+bool WorldDescription::needs_fast_motion() const {
+  return !joints.empty() || std::ranges::any_of(bodies, [](const BodyDescription& body) {
+    return body.driven || body.shape.kind != ShapeDescription::Kind::ball;
+  });
+}
+
 std::vector<std::string> world_methods() {
   std::vector<std::string> names{"exact", "dop853", "rk4", "fast"};
   for (const std::string& integrator : world_integrators()) names.push_back(integrator);
   return names;
+}
+
+std::vector<std::string> world_methods(const WorldDescription& world) {
+  if (world.needs_fast_motion()) return {"fast", "semi_implicit_euler"};
+  return world_methods();
 }
 
 double collisions_of(const WorldDescription& world, std::span<const double> state) {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,13 +37,26 @@ struct CombineRuleDescription {
   friend bool operator==(const CombineRuleDescription&, const CombineRuleDescription&) = default;
 };
 
+/// The shape of a body in a frame of its own, as in shapes/shape.hpp. What another kind has is not valid.
+struct ShapeDescription {
+  enum class Kind : std::uint8_t { ball, capsule, box, hull };
+  Kind kind = Kind::ball;
+  NodeId radius;                                 // of a ball, and of the ends of a capsule
+  NodeId length;                                 // of a capsule
+  NodePoint size;                                // of a box
+  NodeId rounding;                               // of a box or a hull
+  std::vector<std::array<double, 3>> corners{};  // of a hull: numbers, so that what they depend on decides the model
+};
+
 /// Where it is and how it moves at the start are the initial values of its states.
 struct BodyDescription {
   std::string name;  // "ball", "grain[3]"
-  NodeId radius;
-  NodeId mass;     // not valid: density times volume
-  NodeId density;  // not valid where there is a mass
-  bool fixed = false;
+  ShapeDescription shape{};
+  NodeId radius;        // the greatest distance of a point from its centre of mass
+  NodeId mass;          // density times volume where none is given
+  NodeId density;       // not valid where a mass is given
+  bool fixed = false;   // nothing moves it
+  bool driven = false;  // fixed, and moves with its velocity and spin
   std::uint32_t group = 0;
   MaterialDescription material;
   std::size_t first_state = 0;  // of its body_states(dimension) in Model::states
@@ -65,6 +79,25 @@ struct SpringDescription {
   NodePoint point;
   NodeId stiffness, length, damping;
   Span span;
+};
+
+/// A joint between two bodies, or a body and the world. Places and axes are those at the start.
+struct JointDescription {
+  std::string name;                       // "door" of one without a name is that of its first body
+  std::string kind;                       // one of `joint_kinds` (words.hpp)
+  std::size_t first = no_body;            // the coordinate is that of this body ...
+  std::size_t second = no_body;           // ... against this one; no body: the world
+  NodePoint anchor_first, anchor_second;  // where it holds them; of a gear of no meaning
+  NodePoint axis, axle;                   // not valid where they are of no meaning
+  NodeId lower, upper;                    // limits of the coordinate; not valid: none
+  NodeId hertz, damping, rest;            // of a spring; not valid: none
+  NodeId motor_speed, motor_most;         // not valid: none; the speed may depend on everything
+  NodeId ratio;                           // of a gear
+  NodeId breaks_at, breaks_at_torque;     // not valid: never
+  bool collide = false;                   // the two bodies with each other
+  bool is_named = false;                  // only then has it a measure of its coordinate
+  std::size_t first_measure = no_body;    // of `joint_measures` in Model::states; no_body: none
+  Span span{};
 };
 
 /// `force on ball = (...)`, or `torque on ball = ...`, which has one component in the plane: any expressions of the
@@ -95,11 +128,16 @@ struct WorldDescription {
   std::vector<BodyDescription> bodies;  // their states are the first of the model, in this order
   std::vector<WallDescription> walls;
   std::vector<SpringDescription> springs;
+  std::vector<JointDescription> joints;
   std::vector<ForceDescription> forces, torques;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // groups
   WorldMode mode;
-  std::size_t first_measure = 0;  // of `measures(dimension)` in Model::states: world.kinetic, ...; the last states
+  // Of `world_measures(dimension)` in Model::states: world.kinetic, ...; those of joints follow, as the last states.
+  std::size_t first_measure = 0;
   Span span;
+
+  /// Whether only the fast motion moves it: for its joints, or for bodies that are driven or are not balls.
+  [[nodiscard]] bool needs_fast_motion() const;
 
   /// The number of states of all bodies.
   [[nodiscard]] std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
@@ -111,6 +149,12 @@ struct WorldDescription {
 /// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.
 [[nodiscard]] std::vector<std::string> world_measures(int dimension);
 
+/// What a joint tells of itself: a hinge `angle`, sliders, distances and wheels `length`, if it has a name; the force
+/// and the torque on its first body, `force_x`, ..., `torque` in the plane, `torque_x`, ... in space; `motor_torque` or
+/// `motor_force`.
+[[nodiscard]] std::vector<std::string> joint_measures(std::string_view kind, int dimension, bool is_named,
+                                                      bool has_motor);
+
 /// So many there were until the model was in this state.
 [[nodiscard]] double collisions_of(const WorldDescription& world, std::span<const double> state);
 
@@ -120,5 +164,7 @@ struct WorldDescription {
 /// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
 /// the integrator that the world names, or by the name of one.
 [[nodiscard]] std::vector<std::string> world_methods();
+/// Those of them that move this world.
+[[nodiscard]] std::vector<std::string> world_methods(const WorldDescription& world);
 
 }  // namespace continuo::model

@@ -11,7 +11,7 @@ std::vector<Method> methods_for(const model::Model& model) {
   const Kind kind = kind_of(model);
   std::vector<Method> methods;
   if (kind.solver == Solver::world) {
-    for (const std::string& name : model::world_methods())
+    for (const std::string& name : model::world_methods(*model.world))
       methods.push_back({.name = name, .title = name, .chooses_steps = has_no_step(kind, name)});
     return methods;
   }

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <continuo/language/described_shape.hpp>
 #include <continuo/language/text/words.hpp>
 #include <continuo/status/require.hpp>
+#include <continuo/worlds/build_joints.hpp>
 #include <continuo/worlds/build_world.hpp>
 
 namespace continuo::worlds {
@@ -26,6 +28,9 @@ class Values {
   void want(const std::array<NodeId, Size>& nodes, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) want(nodes[i]);
   }
+  void want(const std::vector<NodeId>& nodes) {
+    for (const NodeId node : nodes) want(node);
+  }
   void want(const model::MaterialDescription& m) { want(m.restitution), want(m.friction), want(m.rolling); }
   void compute() { values_ = evaluate(model_, nodes_, variables_); }
 
@@ -35,6 +40,10 @@ class Values {
     Vector<double, Dim> point;
     for (std::size_t i = 0; i < point.size(); ++i) point[i] = next();
     return point;
+  }
+  std::span<const double> next(std::size_t count) {
+    next_ += count;
+    return std::span(values_).subspan(next_ - count, count);
   }
   Material<double> next_material() {
     Material<double> material;
@@ -70,7 +79,8 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
   values.want(text.gravity, axes);
   for (const NodeId node : {text.attraction, text.softening, text.opening, text.drag_linear, text.drag_quadratic})
     values.want(node);
-  for (const auto& body : text.bodies) values.want(body.radius), values.want(body.mass), values.want(body.material);
+  for (const auto& body : text.bodies)
+    values.want(model::shape_nodes(body.shape, Dim)), values.want(body.mass), values.want(body.material);
   for (const auto& wall : text.walls)
     values.want(wall.normal, axes), values.want(wall.offset), values.want(wall.material);
   for (const auto& spring : text.springs) {
@@ -96,10 +106,11 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
   for (const auto& body : text.bodies) {
     const double* state = variables.data() + model.layout.states + body.first_state;
     BodyDefinition<double, Dim> definition;
-    definition.shape = Sphere<double>{values.next()};
+    definition.shape = model::described_shape<Dim>(body.shape, values.next(model::shape_nodes(body.shape, Dim).size()));
     definition.mass = values.next();
     definition.material = values.next_material();
     definition.fixed = body.fixed;
+    definition.traits.is_driven = body.driven;
     definition.group = body.group;
     for (std::size_t axis = 0; axis < axes; ++axis) {
       definition.position[axis] = *state++;
@@ -110,6 +121,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     const auto added = world.add(definition);
     if (!added && built.status) built.status = invalid_input("`" + body.name + "`: " + added.status().message);
     if (!added) return built;
+    world.position.back() = definition.position;  // the states have the centre of mass, not the origin of the shape
   }
   for (const auto& wall : text.walls) {
     Wall<double, Dim> made;
@@ -141,6 +153,12 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
                         .friction = combination(text.combine_rule.friction),
                         .rolling_resistance = combination(text.combine_rule.rolling)};
   for (const auto& [a, b] : text.ignored) require(world.ignore(a, b));  // the language has counted the groups
+  auto joints = add_joints(model, variables, world);
+  if (joints) {
+    built.joints = *std::move(joints);
+  } else {
+    built.status = joints.status();
+  }
   return built;
 }
 

@@ -2,7 +2,7 @@
 // Builds the bodies of a world from its description and the present values of its parameters.
 #pragma once
 #include <span>
-#include <string>
+#include <vector>
 
 #include <continuo/bodies/world.hpp>
 #include <continuo/language/model.hpp>
@@ -14,11 +14,12 @@ namespace continuo::worlds {
 template <int Dim>
 struct BuiltWorld {
   World<double, Dim> world;
-  Status status{};  // fails where a body or wall is invalid
+  std::vector<JointHandle> joints{};  // in the order of the description
+  Status status{};                    // fails where a body, a wall or a joint is invalid
 };
 
-/// The positions and velocities of bodies come from the states in `variables`. Bodies have the order of the
-/// description.
+/// The positions and velocities of bodies come from the states in `variables`, which are those of the start: there
+/// joints hold them. Bodies have the order of the description.
 template <int Dim>
 [[nodiscard]] BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> variables);
 

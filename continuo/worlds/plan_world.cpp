@@ -20,7 +20,6 @@ using model::Experiment;
 using model::NodeId;
 using model::Plan;
 using model::Planner;
-using model::WorldMode;
 
 /// The value of a number of the world; nothing where the model leaves it to the motion.
 std::optional<double> number(const model::Model& model, NodeId node, const Plan& plan) {
@@ -28,12 +27,17 @@ std::optional<double> number(const model::Model& model, NodeId node, const Plan&
 }
 
 /// Sets the method: that of the world's mode, or the one that the experiment names instead.
-bool set_method(Planner& planner, const WorldMode& mode, const Experiment& experiment) {
+bool set_method(Planner& planner, const model::WorldDescription& world, const Experiment& experiment) {
   Plan& plan = planner.plan();
-  plan.method = experiment.method.value_or(mode.fast ? "fast" : "exact");
+  plan.method = experiment.method.value_or(world.mode.fast ? "fast" : "exact");
   plan.reason = experiment.method ? "it was asked for" : "the world names it";
-  const std::vector<std::string> names = model::world_methods();
+  const std::vector<std::string> names = model::world_methods(world), all = model::world_methods();
   if (std::ranges::find(names, plan.method) != names.end()) return true;
+  if (std::ranges::find(all, plan.method) != all.end()) {
+    planner.fail("E334", fmt::format("`{}` moves balls without joints, and this world has more", plan.method),
+                 fmt::format("there are {}", fmt::join(names, " and ")), true);
+    return false;
+  }
   const std::string near = model::did_you_mean(plan.method, names);
   planner.fail("E334", fmt::format("there is no method `{}` for bodies", plan.method),
                near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : near, true);
@@ -75,7 +79,7 @@ void set_motion(Planner& planner, const model::Model& model, const Experiment& e
   if (experiment.max_step || experiment.max_steps)
     return planner.fail("E333", "the steps of a world are those of its mode", "leave out --max-step and --max-steps",
                         true);
-  if (!set_method(planner, model.world->mode, experiment)) return;
+  if (!set_method(planner, *model.world, experiment)) return;
   if (set_tolerance(planner, model, experiment)) set_step(planner, model, experiment);
 }
 

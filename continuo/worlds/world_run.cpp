@@ -10,8 +10,10 @@
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/solve/integrator.hpp>
+#include <continuo/status/require.hpp>
 #include <continuo/worlds/build_world.hpp>
 #include <continuo/worlds/coupled_equations.hpp>
+#include <continuo/worlds/joint_states.hpp>
 #include <continuo/worlds/world_run.hpp>
 #include <continuo/worlds/world_shapes.hpp>
 
@@ -45,9 +47,11 @@ class Moving final : public WorldRun {
         options_(std::move(options)),
         variables_(variables.begin(), variables.end()),
         coupled_(*program_, variables),
+        motors_(*program_, variables),
         start_(variables[model::Layout::time]) {
     const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
     state_.assign(first, first + static_cast<std::ptrdiff_t>(model().states.size()));
+    find_starts();
     const auto z = state_.begin() + static_cast<std::ptrdiff_t>(coupled_.first());
     companions_.state.assign(z, z + static_cast<std::ptrdiff_t>(coupled_.states()));
     companions_.absolute_tolerance = options_.tolerance * 1e-3;
@@ -57,17 +61,23 @@ class Moving final : public WorldRun {
                              std::span<double> rate) { coupled_(world_, t, at, z_now, force, torque, rate); };
   }
 
-  /// Builds the world from its parameters, and fails where these are invalid. Existing bodies keep their states.
+  /// Builds the world from its parameters, and fails where these are invalid. Existing bodies keep their states, and
+  /// joints where they hold them, in the frames of the bodies.
   Status build() {
-    BuiltWorld<Dim> built = build_world<Dim>(model(), variables_);
+    const bool is_first = world_.size() == 0;
+    BuiltWorld<Dim> built = build_world<Dim>(model(), is_first ? variables_ : variables_of_start());
     if (!built.status) return built.status;
-    if (world_.size() > 0) {
+    if (!is_first) {
       built.world.position = world_.position, built.world.velocity = world_.velocity;
       built.world.orientation = world_.orientation, built.world.spin = world_.spin;
       built.world.time = world_.time;
+      for (std::size_t k = 0; k < joints_.size(); ++k)
+        if (const auto* const old = world_.find(joints_[k]))
+          built.world.find(built.joints[k])->is_broken = old->is_broken;
     }
     world_ = std::move(built.world);
-    shapes_ = shapes_of(world_, *model().world);
+    joints_ = std::move(built.joints);
+    shapes_ = shapes_of<Dim>(world_, joints_, *model().world);
     make_motion();
     return {};
   }
@@ -91,6 +101,8 @@ class Moving final : public WorldRun {
   const std::vector<BodyShape>& bodies() const override { return shapes_.bodies; }
   const std::vector<WallShape>& walls() const override { return shapes_.walls; }
   const std::vector<SpringShape>& springs() const override { return shapes_.springs; }
+  const std::vector<BodyForm>& forms() const override { return shapes_.forms; }
+  const std::vector<JointShape>& joints() const override { return shapes_.joints; }
   Point position(std::size_t i) const override { return point_of<Dim>(world_.position[i]); }
   Point velocity(std::size_t i) const override { return point_of<Dim>(world_.velocity[i]); }
   Point spin(std::size_t i) const override {
@@ -123,6 +135,7 @@ class Moving final : public WorldRun {
     *measure++ = potential_energy();
     for (const double component : momentum(world_).components) *measure++ = component;
     *measure = static_cast<double>(collisions());
+    write_joints<Dim>(world_, joints_, *model().world, state_);
     return state_;
   }
 
@@ -149,6 +162,22 @@ class Moving final : public WorldRun {
     make_motion();
     collisions_apart_ += static_cast<std::size_t>(model::collisions_of(*model().world, state)) - collisions();
   }
+  bool is_rigid() const override { return !joints_.empty() || world_.has_solids(); }
+  void pull(std::optional<std::pair<std::size_t, Point>> body_and_target) override {
+    if (!body_and_target) return drop_hand();
+    const auto& [body, target] = *body_and_target;
+    if (world_.is_fixed(body)) return;
+    Joint<double, Dim>* joint = world_.find(hand_);
+    if (joint && joint->b != world_.handle(body)) {
+      drop_hand();
+      joint = nullptr;
+    }
+    if (!joint) {
+      hand_ = require(world_.add_joint(definition_of_hand(body)));
+      joint = world_.find(hand_);
+    }
+    joint->target = vector_of<Dim>(target);
+  }
   void set_body(std::size_t body, const Point& position, const Point& velocity) override {
     world_.position[body] = vector_of<Dim>(position);
     world_.velocity[body] = vector_of<Dim>(velocity);
@@ -160,7 +189,7 @@ class Moving final : public WorldRun {
     const model::Layout& layout = model().layout;
     const bool is_parameter = variable >= layout.parameters && variable < layout.inputs;
     variables_[variable] = value;
-    coupled_.set(variable, value);
+    set_everywhere(variable, value);
     if (!is_parameter) {
       renew();
       return {};
@@ -170,14 +199,14 @@ class Moving final : public WorldRun {
       const model::Parameter& parameter = model().parameters[i];
       if (parameter.independent || std::ranges::find(set_, parameter.variable) != set_.end()) continue;
       variables_[parameter.variable] = evaluate(model(), parameter.expression, variables_);
-      coupled_.set(parameter.variable, variables_[parameter.variable]);
+      set_everywhere(parameter.variable, variables_[parameter.variable]);
     }
     Status status = build();
     if (!status) {
       variables_ = before;
       set_.pop_back();
       for (const model::Parameter& parameter : model().parameters)
-        coupled_.set(parameter.variable, variables_[parameter.variable]);
+        set_everywhere(parameter.variable, variables_[parameter.variable]);
     }
     return status;
   }
@@ -209,8 +238,8 @@ class Moving final : public WorldRun {
     World<double, Dim> found = world_;
     if (Status status = continuo::restore(saved.bodies, found); !status) return status;
     if (found.size() != world_.size() || found.walls().size() != world_.walls().size() ||
-        found.springs.size() != world_.springs.size())
-      return invalid_input("it has other bodies, walls or springs");
+        found.springs.size() != world_.springs.size() || found.joint_count() < world_.joint_count())
+      return invalid_input("it has other bodies, walls, springs or joints");
     if (found.time != saved.time) return invalid_input("its bodies are at another time");
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
       return invalid_input("a state of its equations is not finite");
@@ -226,22 +255,69 @@ class Moving final : public WorldRun {
     Status status =
         exact_ ? continuo::restore(saved.bodies, world_, *exact_) : continuo::restore(saved.bodies, world_, *fast_);
     if (!status) return status;
+    drop_hand();
     companions_.state = saved.equations;
     start_ = saved.start;
     steps_ = saved.steps;
     collisions_apart_ = saved.collisions - counted();
     for (std::uint32_t i = model().layout.parameters; i < model().layout.samples; ++i) {
-      if (variables_[i] != saved.variables[i]) coupled_.set(i, saved.variables[i]);
+      if (variables_[i] != saved.variables[i]) set_everywhere(i, saved.variables[i]);
     }
     variables_ = saved.variables;
     coupled_.go(saved.mode);
     contacts_.clear();
-    shapes_ = shapes_of(world_, *model().world);
+    shapes_ = shapes_of<Dim>(world_, joints_, *model().world);
     return {};
   }
 
  private:
   const model::Model& model() const { return program_->model; }
+
+  /// Remembers which bodies begin elsewhere than the model says.
+  void find_starts() {
+    if (model().world->joints.empty()) return;
+    const std::size_t count = model().world->body_states();
+    std::vector<model::NodeId> nodes;
+    for (std::size_t i = 0; i < count; ++i) nodes.push_back(model().states[i].initial);
+    const std::vector<double> starts = evaluate(model(), nodes, variables_);
+    for (std::size_t i = 0; i < count; ++i)
+      if (starts[i] != state_[i]) starts_elsewhere_.emplace_back(i, state_[i]);
+  }
+  /// With the present parameters and the bodies where they begin: there joints hold them.
+  std::vector<double> variables_of_start() const {
+    std::vector<double> variables = variables_;
+    if (model().world->joints.empty()) return variables;
+    const std::size_t count = model().world->body_states();
+    std::vector<model::NodeId> nodes;
+    for (std::size_t i = 0; i < count; ++i) nodes.push_back(model().states[i].initial);
+    const std::vector<double> starts = evaluate(model(), nodes, variables_);
+    std::ranges::copy(starts, variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states));
+    for (const auto& [i, value] : starts_elsewhere_) variables[model().layout.states + i] = value;
+    return variables;
+  }
+  /// Strong enough to lift ten times all bodies that move, and to bring this one across itself in a tenth of a unit of
+  /// time: a hand that is stronger tears at joints.
+  JointDefinition<double, Dim> definition_of_hand(std::size_t body) const {
+    constexpr double hertz = 5, damping = 1;
+    double mass = 0;
+    for (std::size_t i = 0; i < world_.size(); ++i) mass += world_.is_fixed(i) ? 0 : world_.mass[i];
+    const double acceleration = 10 * length(world_.gravity) + 100 * world_.radius[body];
+    return {.kind = JointKind::pull,
+            .b = world_.handle(body),
+            .anchor = world_.position[body],
+            .spring = JointSpring<double>{.hertz = hertz, .damping = damping},
+            .breaks_at = mass * acceleration};
+  }
+  /// Also that of a snapshot, which may have been taken while a hand pulled.
+  void drop_hand() {
+    for (const JointHandle handle : world_.joints())
+      if (std::ranges::find(joints_, handle) == joints_.end()) world_.remove_joint(handle);
+    hand_ = {};
+  }
+  void set_everywhere(std::uint32_t variable, double value) {
+    coupled_.set(variable, value);
+    if (!motors_.is_empty()) motors_.set(variable, value);
+  }
 
   void make_motion() {
     const std::size_t before = exact_ || fast_ ? collisions() : 0;
@@ -306,6 +382,7 @@ class Moving final : public WorldRun {
   Status fast_step() {
     const double from = world_.time;
     if (Status status = move_equations(from, from + options_.step / 2); !status) return status;
+    if (!motors_.is_empty()) motors_.drive(from, state(), joints_, world_);
     if (Status status = fast_->advance(); !status) return status;
     ++steps_;
     world_.time = start_ + static_cast<double>(steps_) * options_.step;  // a million steps do not drift
@@ -356,8 +433,12 @@ class Moving final : public WorldRun {
   std::vector<double> variables_;
   std::vector<std::uint32_t> set_;  // parameters that were set
   CoupledEquations<Dim> coupled_;
+  MotorSpeeds motors_;
   World<double, Dim> world_;
-  Companions<double, Dim> companions_;  // the equations
+  JointHandle hand_{};                                            // that pulls
+  std::vector<JointHandle> joints_;                               // of the model
+  std::vector<std::pair<std::size_t, double>> starts_elsewhere_;  // states of bodies
+  Companions<double, Dim> companions_;                            // the equations
   std::optional<ExactMotion<double, Dim>> exact_;
   std::optional<FastMotion<double, Dim>> fast_;
   double start_;                      // of the steps

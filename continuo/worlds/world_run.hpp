@@ -19,8 +19,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/contact_events.hpp>
@@ -40,11 +42,19 @@ using Point = std::array<double, 3>;
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// The surface of bodies that are not balls, in the frame of a body: polygons of the plane, or the faces of a
+/// polyhedron, counter-clockwise seen from outside. What is round has many corners.
+struct BodyForm {
+  std::vector<Point> corners;
+  std::vector<std::vector<std::uint32_t>> faces;
+};
+inline constexpr std::size_t no_form = static_cast<std::size_t>(-1);
 /// The constant data of a body.
 struct BodyShape {
   std::string name;
-  double radius, mass;
+  double radius, mass;  // radius: the greatest distance of a point from the centre
   bool fixed;
+  std::size_t form = no_form;  // the number of its form
 };
 /// normal . x >= offset is free; the normal has the length 1.
 struct WallShape {
@@ -57,6 +67,14 @@ struct WallShape {
 struct SpringShape {
   std::size_t a, b;  // bodies; b is model::no_body where it ends at the point
   Point point;
+};
+
+/// A joint and where it holds its bodies, in their frames; of the world, in the world.
+struct JointShape {
+  std::string name, kind;
+  std::size_t first, second;  // bodies; second is model::no_body where it is the world
+  Point on_first, on_second;
+  Point axis;  // of sliders and wheels, in the frame of the second; else 0
 };
 
 /// An impact, or the beginning or end of a lasting contact.
@@ -116,6 +134,10 @@ class WorldRun {
   [[nodiscard]] virtual const std::vector<WallShape>& walls() const = 0;
   /// The springs, in the order of the model.
   [[nodiscard]] virtual const std::vector<SpringShape>& springs() const = 0;
+  /// The forms of bodies that are not balls, each once.
+  [[nodiscard]] virtual const std::vector<BodyForm>& forms() const = 0;
+  /// The joints, in the order of the model.
+  [[nodiscard]] virtual const std::vector<JointShape>& joints() const = 0;
 
   /// The centre of a body, in the model's unit of length.
   [[nodiscard]] virtual Point position(std::size_t body) const = 0;
@@ -141,6 +163,11 @@ class WorldRun {
   /// Begins again from another instant, of any run of this model. The motion finds the rest of its internal state, such
   /// as contacts, again.
   virtual void place(double t, std::span<const double> state) = 0;
+  /// Draws a body's centre to a point by a force, as a hand does, from now on until it is let go; nothing: lets it go.
+  /// Only where `is_rigid`.
+  virtual void pull(std::optional<std::pair<std::size_t, Point>> body_and_target) = 0;
+  /// Whether there are joints, or bodies that are not balls: then a hand does not set bodies, it pulls.
+  [[nodiscard]] virtual bool is_rigid() const = 0;
   /// Moves one body elsewhere, for example where a user drags it.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
   /// Sets a parameter or an input, by its place in the flat space (`Parameter::variable`), with all values that depend

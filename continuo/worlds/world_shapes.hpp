@@ -1,20 +1,26 @@
-// The shapes of a world for display: names, sizes and constant positions of its bodies, walls and springs.
+// The shapes of a world for display: names, sizes, surfaces and constant positions of its bodies, walls, springs and
+// joints.
 #pragma once
 #include <cstddef>
+#include <map>
+#include <span>
 #include <variant>
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
+#include <continuo/language/model.hpp>
 #include <continuo/language/world.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {
 
-/// The bodies, walls and springs of a world, without their motion.
+/// The bodies, walls, springs and joints of a world, without their motion.
 struct Shapes {
   std::vector<BodyShape> bodies;
   std::vector<WallShape> walls;
   std::vector<SpringShape> springs;
+  std::vector<BodyForm> forms;
+  std::vector<JointShape> joints;
 };
 
 /// A vector as a point; z is 0 in the plane.
@@ -25,12 +31,37 @@ template <int Dim>
   return point;
 }
 
-/// `text` is the description from which the world was built; its names have the order of the world.
+/// The surface of a solid. Arcs have corners every 15 degrees; in space edges of rounded polyhedra are shown sharp.
+/// @{
+[[nodiscard]] BodyForm form_of(const Solid<double, 2>& solid);
+[[nodiscard]] BodyForm form_of(const Solid<double, 3>& solid);
+/// @}
+
+/// The shapes of a model's world with these values of its parameters; nothing where they make none.
+[[nodiscard]] Shapes shapes_of(const model::Model& model, std::span<const double> variables);
+
+/// `text` is the description from which the world was built, with these joints; its names have the order of the world.
 template <int Dim>
-[[nodiscard]] Shapes shapes_of(const World<double, Dim>& world, const model::WorldDescription& text) {
+[[nodiscard]] Shapes shapes_of(const World<double, Dim>& world, std::span<const JointHandle> joints,
+                               const model::WorldDescription& text) {
   Shapes shapes;
-  for (std::size_t i = 0; i < world.size(); ++i)
+  std::map<const Solid<double, Dim>*, std::size_t> forms;  // equal bodies share their solids
+  for (std::size_t i = 0; i < world.size(); ++i) {
     shapes.bodies.push_back({text.bodies[i].name, world.radius[i], world.mass[i], world.is_fixed(i)});
+    const Solid<double, Dim>* const solid = world.solid(i);
+    if (!solid) continue;
+    const auto [known, is_new] = forms.try_emplace(solid, shapes.forms.size());
+    if (is_new) shapes.forms.push_back(form_of(*solid));
+    shapes.bodies.back().form = known->second;
+  }
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint<double, Dim>* const joint = world.find(joints[k]);
+    if (!joint) continue;
+    const model::JointDescription& of = text.joints[k];
+    const bool has_axis = joint->kind == JointKind::slider || joint->kind == JointKind::wheel;
+    shapes.joints.push_back({of.is_named ? of.name : "", of.kind, of.first, of.second, point_of<Dim>(joint->anchor_b),
+                             point_of<Dim>(joint->anchor_a), has_axis ? point_of<Dim>(joint->axes_a[0]) : Point{}});
+  }
   for (std::size_t w = 0; w < world.walls().size(); ++w) {
     const Wall<double, Dim>& wall = world.walls()[w];
     shapes.walls.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset, wall.thin});

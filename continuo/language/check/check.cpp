@@ -15,6 +15,7 @@
 #include <continuo/language/check/views/sweep.hpp>
 #include <continuo/language/check/world/finish_world.hpp>
 #include <continuo/language/check/world/forces.hpp>
+#include <continuo/language/check/world/joints.hpp>
 #include <continuo/language/check/world/make_world.hpp>
 #include <continuo/language/check/world/world_declarations.hpp>
 #include <continuo/language/check/world/world_names.hpp>
@@ -58,7 +59,8 @@ void translate(const Declarations& declared, Expressions& expressions, WorldAtWo
   store(InitialValues(expressions, model.states).make(), model);   // starts of states, or a boundary problem
   store(Equations(expressions, model).solve(), model, workspace);  // derivatives in each mode
   store(pair_up(model), model);                                    // positions with their velocities
-  Forces(expressions, world).make(model);                          // of the world
+  Joints(expressions, world, model.states).make_motors();          // of the world
+  Forces(expressions, world).make(model);                          //
   store(make_quantities(expressions), model);                      // lets, outputs, energies
   store(Events(expressions, model).make(), model);                 // with their actions
   if (declared.start) model.start_mode = mode_named(declared, declared.start->mode, expressions.report).value_or(0);

@@ -10,8 +10,9 @@
 
 namespace continuo::model::ast {
 
-/// `radius 0.5`, `at (0, 10) [m]` (a List, or a Quantity of one), `integrator central_difference` (a Name); `fixed` has
-/// no value and is Missing.
+/// `radius 0.5`, `at (0, 10) [m]` (a List, or a Quantity of one), `hull (0, 0) (1, 0) (0, 1)` (a List of these),
+/// `limits -90..90 [deg]` (a List of two), `integrator central_difference` (a Name); `fixed` has no value and is
+/// Missing.
 struct WorldAttribute {
   Identifier name;
   Expression value;
@@ -72,6 +73,16 @@ struct WorldSprings {
   WorldAttributes attributes;
 };
 
+/// `hinge door to frame at (0, 1) limits -90..90 [deg]`, `hinge knee: shin to thigh at (0, 1)`,
+/// `distance bob to (0, 5)`, `weld sign at (0, 1)`, which is to the world.
+struct WorldJoint {
+  Identifier kind;
+  std::optional<Name> name;
+  Name first;
+  std::variant<std::monostate, Name, Expression> second;  // nothing: the world; a point: of the world
+  WorldAttributes attributes;
+};
+
 /// `fix cloth[1], cloth[8]`.
 struct WorldFix {
   std::vector<Name> bodies;
@@ -92,8 +103,8 @@ struct WorldFamily {
 };
 
 struct WorldItem {
-  std::variant<WorldSetting, WorldWall, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings, WorldFix,
-               WorldIgnore, WorldFamily>
+  std::variant<WorldSetting, WorldWall, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings, WorldJoint,
+               WorldFix, WorldIgnore, WorldFamily>
       node;
   Span span;
 };

@@ -2,7 +2,8 @@
 // The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
 // (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
 // (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), sweeps (parser_sweep.cpp), worlds
-// (parser_world.cpp). The reading of tokens and what happens after an error is parser_core.cpp.
+// (parser_world.cpp) and their joints (parser_joints.cpp). The reading of tokens and what happens after an error is
+// parser_core.cpp.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -240,6 +241,7 @@ class Parser {
   [[nodiscard]] ast::WorldBodies parse_world_bodies();
   [[nodiscard]] ast::WorldSpring parse_world_spring();
   [[nodiscard]] ast::WorldSprings parse_world_springs();
+  [[nodiscard]] ast::WorldJoint parse_world_joint(ast::Identifier kind);
   [[nodiscard]] ast::WorldFix parse_world_fix();
   [[nodiscard]] ast::WorldIgnore parse_world_ignore();
   [[nodiscard]] ast::WorldFamily parse_world_family();
@@ -250,6 +252,9 @@ class Parser {
   void skip_to_attribute(std::span<const std::string_view> known);
   [[nodiscard]] ast::Expression parse_world_value(std::string_view word);
   [[nodiscard]] ast::Expression parse_world_name(std::string_view word);
+  [[nodiscard]] ast::Expression parse_points(std::string_view example);
+  [[nodiscard]] ast::Expression parse_limits();
+  [[nodiscard]] ast::Expression parse_most(std::string_view word);
 
   const Source& source_;
   Lexer lexer_;

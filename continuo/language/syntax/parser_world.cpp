@@ -16,9 +16,10 @@ namespace {
 using ast::Expression;
 using Word = std::string_view;
 
-constexpr std::array<Word, 15> item_words = {"dimension", "gravity", "material", "combine",   "attraction",
-                                             "drag",      "mode",    "wall",     "container", "body",
-                                             "bodies",    "spring",  "springs",  "fix",       "ignore"};
+constexpr std::array<Word, 24> item_words = {"dimension", "gravity", "material",  "combine", "attraction", "drag",
+                                             "mode",      "wall",    "container", "body",    "bodies",     "spring",
+                                             "springs",   "hinge",   "slider",    "weld",    "ball",       "distance",
+                                             "rope",      "wheel",   "universal", "gear",    "fix",        "ignore"};
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
@@ -27,15 +28,17 @@ constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
 constexpr std::array<Word, 7> fast_words = {"step",  "substeps",    "integrator", "threads",
                                             "hertz", "sleep_after", "sleep_speed"};
-constexpr std::array<Word, 12> body_words = {"at",      "velocity",    "angle",    "spin",    "radius", "mass",
-                                             "density", "restitution", "friction", "rolling", "group",  "fixed"};
-constexpr std::array<Word, 15> grid_words = {"from",  "spacing", "jitter",      "seed",     "velocity",
-                                             "angle", "spin",    "radius",      "mass",     "density",
-                                             "group", "fixed",   "restitution", "friction", "rolling"};
+constexpr std::array<Word, 18> body_words = {"at",          "velocity", "angle",   "axis",     "spin",  "radius",
+                                             "box",         "capsule",  "hull",    "rounding", "mass",  "density",
+                                             "restitution", "friction", "rolling", "group",    "fixed", "driven"};
+constexpr std::array<Word, 19> grid_words = {
+    "from",     "spacing", "jitter", "seed",    "velocity", "angle", "spin",        "radius",   "box",    "capsule",
+    "rounding", "axis",    "mass",   "density", "group",    "fixed", "restitution", "friction", "rolling"};
 constexpr std::array<Word, 13> random_words = {"radius",  "speed", "seed",  "velocity",    "angle",    "spin",   "mass",
                                                "density", "group", "fixed", "restitution", "friction", "rolling"};
-constexpr std::array<Word, 12> stack_words = {"from", "radius", "mass",  "density",     "velocity", "angle",
-                                              "spin", "group",  "fixed", "restitution", "friction", "rolling"};
+constexpr std::array<Word, 15> stack_words = {"from",  "radius",  "box",         "capsule",  "rounding",
+                                              "mass",  "density", "velocity",    "angle",    "spin",
+                                              "group", "fixed",   "restitution", "friction", "rolling"};
 constexpr std::array<Word, 3> spring_words = {"stiffness", "length", "damping"};
 constexpr std::array<Word, 4> springs_words = {"stiffness", "length", "damping", "diagonal"};
 
@@ -44,10 +47,12 @@ bool is_one_of(Word word, std::span<const Word> words) {
 }
 
 bool is_flag(Word word) {
-  return word == "fixed" || word == "diagonal" || word == "thin";
+  constexpr std::array<Word, 5> flags = {"fixed", "driven", "diagonal", "thin", "collide"};
+  return is_one_of(word, flags);
 }
 bool takes_point(Word word) {
-  return word == "at" || word == "velocity" || word == "from" || word == "spacing";
+  constexpr std::array<Word, 7> points = {"at", "velocity", "from", "spacing", "box", "axis", "axle"};
+  return is_one_of(word, points);
 }
 bool takes_name(Word word) {
   return word == "group" || word == "integrator";
@@ -146,6 +151,8 @@ ast::WorldItem Parser::parse_world_item() {
     item.node = parse_world_spring();
   } else if (word == "springs") {
     item.node = parse_world_springs();
+  } else if (is_one_of(word, joint_kinds)) {
+    item.node = parse_world_joint(std::move(name));
   } else if (word == "fix") {
     item.node = parse_world_fix();
   } else if (word == "ignore") {
@@ -334,6 +341,10 @@ void Parser::skip_to_attribute(std::span<const Word> known) {
 
 Expression Parser::parse_world_value(Word word) {
   if (takes_point(word)) return parse_point_with_unit();
+  if (word == "hull") return parse_points("as in hull (0, 0) (1, 0) (0, 1)");
+  if (word == "ends") return parse_points("as in ends (0, 0) (0, 5): where it holds the first and the second");
+  if (word == "limits") return parse_limits();
+  if (word == "torque" || word == "force") return parse_most(word);
   if (word == "spin" || word == "angle") return parse_tree(Level::additive).expression;  // in space a list
   return parse_sum_of_terms();
 }

@@ -91,15 +91,19 @@ are known.)"},
 
 Capitals matter.)"},
     Code{"E224", "there is no such member",
-         R"(A body in the plane has the members ball.x, ball.x', ball.y, ball.y', ball.angle, ball.angle',
-ball.radius and ball.mass; in space ball.z, ball.z' and the spin ball.spin_x, ball.spin_y, ball.spin_z instead of
-the angle. The world has the members world.kinetic, world.potential, world.momentum_x, ... and world.collisions. A
-body itself is no number.)"},
+         R"(A body in the plane has the members ball.x, ball.x', ball.y, ball.y', ball.angle, ball.angle' (or
+ball.spin), ball.radius and ball.mass; in space ball.z, ball.z' and the spin ball.spin_x, ball.spin_y, ball.spin_z
+instead of the angle. A joint with a name has its force_x, force_y and torque (in space torque_x, ...), a hinge an
+angle, a slider, distance, rope or wheel a length, and its motor_torque or motor_force; a joint without a name gives
+all but angle and length to its first body, door.torque. The world has the members world.kinetic, world.potential,
+world.momentum_x, ... and world.collisions. A body or a joint itself is no number.)"},
     Code{"E225", "this cannot be in a world",
          R"(Radius, mass and density are greater than 0, restitution goes from 0 (no bounce) to 1 (no loss),
-friction is 0 or more; a spring has a stiffness and two ends; the lower corner of a container comes first. Bodies
-at random are placed where they touch no other: a box holds them up to about a half of the plane or a third of
-space.)"},
+friction is 0 or more; a spring has a stiffness and two ends; the lower corner of a container comes first. A body has
+one shape: a ball of a radius, or a box, a capsule, or the hull of points that are not on one line (in space: not in one
+plane). A joint connects two bodies, or a body with the world, of which one can move; its limits go from the lower to
+the upper one, and a slider, and in space a hinge, needs its axis. Bodies at random are placed where they touch no
+other: a box holds them up to about a half of the plane or a third of space.)"},
     Code{"E226", "bodies are moved by forces",
          R"(A body has no equation and no initial value of its own. Its initial state is given in the world, and
 forces move it:
@@ -108,7 +112,8 @@ forces move it:
   force on ball = (-k*ball.x, 0)
 
 Forces may use parameters, t, inputs, positions and velocities of bodies and the states of equations; equations may use
-positions and velocities of bodies. Members of the world (world.kinetic) are for outputs and checks only.)"},
+positions and velocities of bodies. Members of the world (world.kinetic) and of joints (door.torque) are for outputs
+and checks.)"},
     Code{"E227", "the dimension is wrong",
          R"(A world has 2 dimensions, or 3 with `dimension 3`; all its points have this number of coordinates.)"},
     Code{"E230", "an equation is missing",
@@ -197,7 +202,8 @@ greater than zero.)"},
     Code{"E264", "the method does not fit the model",
          R"(velocity_verlet and central_difference are for x'' = a(t, x): every state must be a position or its
 velocity, and both in units that fit (x in m, x' in m/s, time in s). The other methods are general. The method of a
-world of bodies is its mode, exact or fast.)"},
+world of bodies is its mode, exact or fast; bodies that are driven or are not balls, and joints, are moved by the fast
+mode with its usual integrator.)"},
     Code{"E265", "there is nothing to drag",
          R"(`drag` lets the mouse move the states that a point depends on: ball (x, y) drag, or for a pendulum
 ball (l*sin(theta), -l*cos(theta)) drag. A point that depends on no state cannot be dragged.)"},

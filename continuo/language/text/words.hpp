@@ -22,4 +22,8 @@ namespace continuo::model {
 inline constexpr std::array<std::string_view, 5> combinations{"average", "minimum", "maximum", "product",
                                                               "geometric_mean"};
 
+/// `hinge door to frame`: the kinds of joints, by the words that begin them. A rope is a distance with an upper limit.
+inline constexpr std::array<std::string_view, 9> joint_kinds{"hinge", "slider", "weld",      "ball", "distance",
+                                                             "rope",  "wheel",  "universal", "gear"};
+
 }  // namespace continuo::model

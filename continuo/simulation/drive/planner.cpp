@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/world.hpp>
 #include <continuo/simulation/drive/planner.hpp>
 #include <continuo/simulation/program/model_system.hpp>
 #include <continuo/simulation/program/singular_mass.hpp>
@@ -74,7 +75,7 @@ void Planner::set_start() {
     const std::vector<std::size_t> meant = states_named(model_, name);
     if (meant.empty()) problems_.push_back(no_state(model_, name, run_.span));
     for (const std::size_t i : meant) {
-      if (model_.states[i].in_world && model_.states[i].base.starts_with("world.")) {
+      if (model_.has_world() && i >= model_.world->first_measure) {
         fail("E346", fmt::format("`{}` follows from the bodies", name), "set where a body begins, such as ball.x",
              true);
         break;

@@ -85,6 +85,11 @@ std::optional<Assign> Actions::assignment(const ast::Assignment& text, Scope& sc
   }
   const Base& base = declared_.bases[symbol->index];
   const std::string name = with_primes(base.name, target.primes);
+  if (base.is_measure) {
+    report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", name), "it follows from the bodies",
+                 "assign what of a body changes: ball.x := ..., ball.x' := ...");
+    return std::nullopt;
+  }
   if (target.primes >= base.order) {
     const bool highest = target.primes == base.order;
     report_.fail("E252", target.span, fmt::format("`{}` cannot be assigned", name),

@@ -66,6 +66,11 @@ Value Lookup::of_symbol(const ast::Name& name, const Symbol* symbol, const std::
                  fmt::format("say what of it: {0}.x, {0}.x', {0}.radius, ...", key));
     return operations_.bad();
   }
+  if (symbol->kind == Symbol::Kind::joint) {
+    report_.fail("E224", name.span, fmt::format("`{}` is a joint, not a number", key), {},
+                 fmt::format("say what of it: {0}.force_x, {0}.torque, ...", key));
+    return operations_.bad();
+  }
   if (symbol->kind == Symbol::Kind::definition) {
     const Definition& definition = workspace_.declared.definitions[symbol->index];
     if (name.primes > 0) {
@@ -251,6 +256,11 @@ Value Lookup::derivative(const ast::Name& name, std::size_t index, Scope& scope)
     NodeId& node = workspace_.state_nodes[state];
     if (!node.valid()) node = workspace_.graph.variable(workspace_.layout.states + static_cast<std::uint32_t>(state));
     return {node, workspace_.units.of(index, name.primes, scope.depth)};
+  }
+  if (base.is_measure && base.family != "world") {
+    report_.fail("E226", name.span, fmt::format("`{}` follows from the bodies", base.name),
+                 "it has no derivative and no equation");
+    return operations_.bad();
   }
   if (base.in_world) {
     refuse_equation_of_body(name, report_);

@@ -14,6 +14,11 @@ std::size_t Declarations::base_index_of_state(std::size_t state) const {
   return static_cast<std::size_t>(after - bases.begin()) - 1;
 }
 
+bool JointText::has_motor() const {
+  return std::ranges::find(text->attributes, "motor", [](const auto& one) { return one.name.text; }) !=
+         text->attributes.end();
+}
+
 std::size_t find_mode(const Declarations& declared, std::string_view name) {
   const auto found = std::ranges::find(declared.modes, name, &ModeText::name);
   return found == declared.modes.end() ? npos : static_cast<std::size_t>(found - declared.modes.begin());

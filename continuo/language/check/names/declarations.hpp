@@ -41,6 +41,7 @@ struct Base {
   std::span<const std::size_t> conditions{};  // into Declarations::conditions
   bool in_world = false;                      // of a body or a measure of the world: it has no equation
   bool has_equation = true;                   // else it has an initial value only
+  bool is_measure = false;                    // of the world or of a joint: it follows from the bodies
 };
 
 template <class T>
@@ -91,6 +92,18 @@ struct PatternText {
   std::vector<long> counts;
   std::size_t first, count;  // of its bodies
 };
+struct JointText {
+  const ast::WorldJoint* text;
+  Instance scope;
+  Span span;
+  std::string name;            // its own, or that of its first body
+  std::string_view family;     // without indices
+  std::size_t base = no_base;  // its first measure
+  static constexpr std::size_t no_base = static_cast<std::size_t>(-1);
+
+  [[nodiscard]] bool is_named() const { return text->name.has_value(); }
+  [[nodiscard]] bool has_motor() const;
+};
 struct WorldText {
   const ast::World* text = nullptr;  // null: the model has no world
   Span span{};
@@ -98,6 +111,7 @@ struct WorldText {
   std::vector<Placed<ast::WorldItem>> items{};
   std::vector<BodyText> bodies{};
   std::vector<PatternText> patterns{};
+  std::vector<JointText> joints{};
   std::vector<Placed<ast::Force>> forces{};
 
   [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(dimension); }

@@ -8,7 +8,7 @@
 namespace continuo::model::detail {
 
 struct Symbol {
-  enum class Kind : unsigned char { definition, base, unknown, table, body };
+  enum class Kind : unsigned char { definition, base, unknown, table, body, joint };
   Kind kind;
   std::size_t index;  // in the list of its kind: Declarations
   Span span;

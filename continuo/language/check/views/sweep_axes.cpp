@@ -58,14 +58,15 @@ std::optional<double> SweepAxes::number(const ast::Expression& text, const Measu
   return found ? std::optional(found->value) : std::nullopt;
 }
 
-/// Bodies begin where they are put; measures of the world follow from them.
+/// Bodies begin where they are put; measures of the world and its joints follow from them.
 bool SweepAxes::is_state_with_start(std::size_t state, Span span) {
   const State& found = model_.states[state];
   if (model_.needs_boundary_solver()) {
     (void)cannot_be_varied(span, "the model has conditions at several times: vary a parameter that they read");
     return false;
   }
-  if (!found.algebraic && !(found.in_world && found.base.starts_with("world."))) return true;
+  const bool is_measure = expressions_.workspace.declared.base_of_state(state).is_measure;
+  if (!found.algebraic && !is_measure) return true;
   (void)cannot_be_varied(span, "it follows from other quantities");
   return false;
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -31,27 +30,25 @@ std::uint32_t Bodies::group_of(const ast::WorldAttributes& attributes) {
   return 0;
 }
 
-BodyDescription Bodies::description_of(const ast::WorldAttributes& attributes, Scope& scope) {
-  Graph& g = graph_;
+BodyDescription Bodies::description_of(const ast::WorldAttributes& attributes, const MadeShape& made, Scope& scope) {
   BodyDescription body;
-  const ast::Expression* radius = attribute(attributes, "radius");
-  body.radius = radius ? numbers_.number(*radius, scope, work_.length, "the radius", Sort::positive) : g.constant(0.5);
+  body.shape = made.shape;
+  body.radius = made.radius;
   body.material = material_of(attributes, scope, work_, numbers_);
-  body.fixed = attribute(attributes, "fixed") != nullptr;
+  body.driven = attribute(attributes, "driven") != nullptr;
+  body.fixed = body.driven || attribute(attributes, "fixed") != nullptr;
   body.group = group_of(attributes);
   const auto *mass = attribute(attributes, "mass"), *density = attribute(attributes, "density");
   if (mass && density) {
     report_.fail("E225", density->span, "a body has a mass or a density", "both are given");
   } else if (mass) {
     body.mass = numbers_.number(*mass, scope, work_.mass, "the mass", Sort::positive);
-  } else if (body.radius.valid()) {
+  } else if (made.volume.valid()) {
     Measured wanted = work_.mass;
     for (std::size_t axis = 0; axis < text_.axes(); ++axis) wanted = quotient(wanted, work_.length);
-    body.density = density ? numbers_.number(*density, scope, wanted, "the density", Sort::positive) : g.constant(1);
-    const bool plane = text_.dimension == 2;
-    const double factor = plane ? std::numbers::pi : 4 * std::numbers::pi / 3;
-    const NodeId volume = g.multiply(g.constant(factor), g.power(body.radius, g.constant(plane ? 2 : 3)));
-    if (body.density.valid()) body.mass = g.multiply(body.density, volume);
+    body.density =
+        density ? numbers_.number(*density, scope, wanted, "the density", Sort::positive) : graph_.constant(1);
+    if (body.density.valid()) body.mass = graph_.multiply(body.density, made.volume);
   }
   return body;
 }
@@ -63,7 +60,22 @@ NodePoint Bodies::velocity_of(const ast::WorldAttributes& attributes, Scope& sco
   return {zero, zero, zero};
 }
 
-/// In space an angle is three numbers: the axis about which it is turned, and by how much as its length.
+/// In space an angle is three numbers, the axis about which it is turned, and by how much as its length; or one number
+/// about `axis`.
+NodePoint Bodies::rotation_vector(const ast::WorldAttributes& attributes, Scope& scope) {
+  Graph& g = graph_;
+  const Measured pure = Measured::known(Unit());
+  const ast::Expression *angle = attribute(attributes, "angle"), *axis = attribute(attributes, "axis");
+  if (!axis) return numbers_.in_space(*angle, scope, pure, "an angle");
+  const NodePoint about = numbers_.point(*axis, scope, Measured::unknown(), "an axis");
+  const NodeId by = numbers_.number(*angle, scope, pure, "an angle about an axis", Sort::any);
+  if (!about[0].valid() || !by.valid()) return {};
+  const NodeId length = g.apply(Op::hypotenuse, g.apply(Op::hypotenuse, about[0], about[1]), about[2]);
+  numbers_.expect(length, Sort::positive, axis->span, "the length of an axis");
+  const NodeId part = g.divide(by, length);
+  return {g.multiply(about[0], part), g.multiply(about[1], part), g.multiply(about[2], part)};
+}
+
 Bodies::Turn Bodies::turn_of(const ast::WorldAttributes& attributes, Scope& scope) {
   Graph& g = graph_;
   const NodeId zero = g.constant(0);
@@ -72,12 +84,17 @@ Bodies::Turn Bodies::turn_of(const ast::WorldAttributes& attributes, Scope& scop
   if (!plane) turn.orientation = {g.constant(1), zero, zero, zero};
   const Measured pure = Measured::known(Unit());
   const Measured rate = expressions_.workspace.time.per_time(work_.length.is_known() ? pure : Measured::unknown());
-  const ast::Expression *angle = attribute(attributes, "angle"), *spin = attribute(attributes, "spin");
+  const ast::Expression *angle = attribute(attributes, "angle"), *spin = attribute(attributes, "spin"),
+                        *axis = attribute(attributes, "axis");
   if (spin && plane) turn.spin[0] = numbers_.in_plane(*spin, scope, rate, "a spin");
   if (spin && !plane) turn.spin = numbers_.in_space(*spin, scope, rate, "a spin");
+  if (axis && (plane || !angle))
+    report_.fail("E225", axis->span,
+                 plane ? "all bodies of the plane turn about one axis" : "by how much is it turned?", {},
+                 plane ? "leave `axis` out" : "add angle 30 [deg]");
   if (angle && plane) turn.orientation[0] = numbers_.in_plane(*angle, scope, pure, "an angle");
   if (!angle || plane) return turn;
-  const NodePoint about = numbers_.in_space(*angle, scope, pure, "an angle");
+  const NodePoint about = rotation_vector(attributes, scope);
   if (!about[0].valid()) return turn;
   const NodeId whole = g.apply(Op::hypotenuse, g.apply(Op::hypotenuse, about[0], about[1]), about[2]);
   const NodeId half = g.multiply(whole, g.constant(0.5));
@@ -87,6 +104,29 @@ Bodies::Turn Bodies::turn_of(const ast::WorldAttributes& attributes, Scope& scop
   turn.orientation[0] = g.apply(Op::cosine, half);
   for (std::size_t k = 0; k < 3; ++k) turn.orientation[k + 1] = g.multiply(about[k], part);
   return turn;
+}
+
+/// A point of a body that stands so, from the origin of its shape. In space p + 2 q x (q x p + w p) for the quaternion
+/// (w, q).
+NodePoint Bodies::turned(const std::array<double, 3>& point, const Turn& turn) const {
+  Graph& g = graph_;
+  const NodePoint p{g.constant(point[0]), g.constant(point[1]), g.constant(point[2])};
+  if (text_.dimension == 2) {
+    const NodeId c = g.apply(Op::cosine, turn.orientation[0]), s = g.apply(Op::sine, turn.orientation[0]);
+    return {g.subtract(g.multiply(c, p[0]), g.multiply(s, p[1])), g.add(g.multiply(s, p[0]), g.multiply(c, p[1])), {}};
+  }
+  const NodePoint q{turn.orientation[1], turn.orientation[2], turn.orientation[3]};
+  const auto cross = [&](const NodePoint& a, const NodePoint& b) {
+    NodePoint made;
+    for (std::size_t k = 0; k < 3; ++k)
+      made[k] = g.subtract(g.multiply(a[(k + 1) % 3], b[(k + 2) % 3]), g.multiply(a[(k + 2) % 3], b[(k + 1) % 3]));
+    return made;
+  };
+  NodePoint inner = cross(q, p);
+  for (std::size_t k = 0; k < 3; ++k) inner[k] = g.add(inner[k], g.multiply(turn.orientation[0], p[k]));
+  NodePoint made = cross(q, inner);
+  for (std::size_t k = 0; k < 3; ++k) made[k] = g.add(p[k], g.multiply(g.constant(2), made[k]));
+  return made;
 }
 
 void Bodies::set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn) {
@@ -110,7 +150,8 @@ void Bodies::make_body(const BodyText& body) {
     return;
   }
   const ast::WorldAttributes& attributes = body.text->attributes;
-  BodyDescription made = description_of(attributes, scope);
+  const MadeShape shape = shapes_.make(attributes, scope);
+  BodyDescription made = description_of(attributes, shape, scope);
   made.name = body.name;
   made.first_state = expressions_.workspace.declared.bases[body.base].first;
   made.span = body.span;
@@ -119,16 +160,24 @@ void Bodies::make_body(const BodyText& body) {
   NodePoint position{zero, zero, zero};
   if (const ast::Expression* at = attribute(attributes, "at")) {
     position = numbers_.point(*at, scope, work_.length, "a position");
-  } else {
+  } else if (shape.shape.kind != ShapeDescription::Kind::hull) {
     report_.fail("E225", body.span, fmt::format("where is `{}`?", body.name), {}, "add at (0, 0)");
   }
-  set_start(number, position, velocity_of(attributes, scope), turn_of(attributes, scope));
+  const Turn turn = turn_of(attributes, scope);
+  if (shape.centre != std::array<double, 3>{} &&
+      turn.orientation[0].valid()) {  // the corners of a hull are where `at` is the origin
+    const NodePoint centre = turned(shape.centre, turn);
+    for (std::size_t axis = 0; axis < text_.axes() && position[axis].valid() && centre[axis].valid(); ++axis)
+      position[axis] = graph_.add(position[axis], centre[axis]);
+  }
+  set_start(number, position, velocity_of(attributes, scope), turn);
 }
 
 void Bodies::make_pattern(const PatternText& pattern) {
   Scope scope = pattern.scope;
   const ast::WorldAttributes& attributes = pattern.text->attributes;
-  BodyDescription shared = description_of(attributes, scope);
+  const MadeShape shape = shapes_.make(attributes, scope);
+  BodyDescription shared = description_of(attributes, shape, scope);
   shared.span = pattern.span;
   for (std::size_t k = 0; k < pattern.count; ++k) {
     BodyDescription& body = work_.made.bodies[pattern.first + k];
@@ -145,7 +194,7 @@ void Bodies::make_pattern(const PatternText& pattern) {
     return;
   }
   if (pattern.text->pattern == ast::Pattern::grid) return place_grid(pattern, velocity, turn);
-  place_stack(pattern, velocity, turn);
+  place_stack(pattern, shape.height, velocity, turn);
 }
 
 /// The first axis counts fastest.
@@ -186,17 +235,16 @@ void Bodies::place_grid(const PatternText& pattern, const NodePoint& velocity, c
 }
 
 /// One on the other, touching.
-void Bodies::place_stack(const PatternText& pattern, const NodePoint& velocity, const Turn& turn) {
+void Bodies::place_stack(const PatternText& pattern, NodeId height, const NodePoint& velocity, const Turn& turn) {
   Scope scope = pattern.scope;
   Graph& g = graph_;
   const NodePoint from =
       numbers_.point(*attribute(pattern.text->attributes, "from"), scope, work_.length, "a position");
-  const NodeId radius = work_.made.bodies[pattern.first].radius;
-  if (!from[0].valid() || !radius.valid()) return;
+  if (!from[0].valid() || !height.valid()) return;
   for (std::size_t k = 0; k < pattern.count; ++k) {
     NodePoint position = from;
     NodeId& up = position[text_.axes() - 1];
-    up = g.add(up, g.multiply(g.constant(2 * static_cast<double>(k)), radius));
+    up = g.add(up, g.multiply(g.constant(static_cast<double>(k)), height));
     set_start(pattern.first + k, position, velocity, turn);
   }
 }

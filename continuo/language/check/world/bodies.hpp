@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <continuo/language/check/expressions/expressions.hpp>
+#include <continuo/language/check/world/body_shapes.hpp>
 #include <continuo/language/check/world/world_numbers.hpp>
 
 namespace continuo::model::detail {
@@ -19,7 +20,8 @@ class Bodies {
         text_(expressions.workspace.declared.world),
         work_(work),
         states_(states),
-        numbers_(expressions, work) {}
+        numbers_(expressions, work),
+        shapes_(expressions, work) {}
 
   void make();
 
@@ -32,14 +34,17 @@ class Bodies {
 
   void make_body(const BodyText& body);
   void make_pattern(const PatternText& pattern);
-  [[nodiscard]] BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] BodyDescription description_of(const ast::WorldAttributes& attributes, const MadeShape& made,
+                                               Scope& scope);
   [[nodiscard]] std::uint32_t group_of(const ast::WorldAttributes& attributes);
   [[nodiscard]] NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
   [[nodiscard]] Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] NodePoint rotation_vector(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] NodePoint turned(const std::array<double, 3>& point, const Turn& turn) const;
   void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn);
   void place_grid(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
   void place_random(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
-  void place_stack(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+  void place_stack(const PatternText& pattern, NodeId height, const NodePoint& velocity, const Turn& turn);
 
   Expressions& expressions_;
   Report& report_;
@@ -48,6 +53,7 @@ class Bodies {
   WorldAtWork& work_;
   std::vector<State>& states_;
   WorldNumbers numbers_;
+  BodyShapes shapes_;
 };
 
 }  // namespace continuo::model::detail

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/check/world/finish_world.hpp>
+#include <continuo/language/check/world/start_shapes.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -17,19 +18,12 @@ namespace {
 constexpr double least_depth = 1e-9;  // of a radius: less is round-off of bodies that touch
 
 /// Where bodies begin.
-struct Places {
-  std::size_t axes;
-  std::vector<std::array<double, 3>> centre;
-  std::vector<double> radius;
+struct Places : StartShapes {
+  Places(const Model& model, const WorldDescription& made, std::span<const double> variables)
+      : StartShapes(model, made, variables), axes(static_cast<std::size_t>(made.dimension)) {}
 
-  double depth(std::size_t i, std::size_t j) const {
-    double square = 0;
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-      const double between = centre[i][axis] - centre[j][axis];
-      square += between * between;
-    }
-    return radius[i] + radius[j] - std::sqrt(square);
-  }
+  std::size_t axes;
+
   std::size_t longest_axis() const {
     std::array<double, 3> size{};
     for (std::size_t axis = 0; axis < axes; ++axis) {
@@ -66,15 +60,20 @@ std::string others(std::size_t count) {
 
 void look_at_bodies(const WorldDescription& made, const Places& places, Report& report) {
   std::vector<Overlap> found;
-  const auto meet = [&](const BodyDescription& a, const BodyDescription& b) {
+  const auto meet = [&](std::size_t i, std::size_t j) {
+    const BodyDescription &a = made.bodies[i], &b = made.bodies[j];
     if (a.fixed && b.fixed) return false;
+    const auto parts = [&](const JointDescription& joint) {
+      return !joint.collide && std::minmax(joint.first, joint.second) == std::minmax(i, j);
+    };
+    if (std::ranges::any_of(made.joints, parts)) return false;
     return std::ranges::none_of(made.ignored, [&](const auto& pair) {
       return (pair.first == a.group && pair.second == b.group) || (pair.first == b.group && pair.second == a.group);
     });
   };
   places.for_near_pairs([&](std::size_t i, std::size_t j) {
     const double depth = places.depth(i, j);
-    if (depth > least_depth * std::min(places.radius[i], places.radius[j]) && meet(made.bodies[i], made.bodies[j]))
+    if (depth > least_depth * std::min(places.radius[i], places.radius[j]) && meet(i, j))
       found.push_back({std::min(i, j), std::max(i, j), depth});
   });
   if (!found.empty()) {
@@ -95,12 +94,11 @@ void look_at_walls(const Model& model, const WorldDescription& made, const Place
     const std::vector<double> numbers = evaluate(model, parts, variables);
     double length = 0;
     for (std::size_t axis = 0; axis < places.axes; ++axis) length = std::hypot(length, numbers[axis]);
+    std::array<double, 3> normal{};
+    for (std::size_t axis = 0; axis < places.axes; ++axis) normal[axis] = numbers[axis] / length;
     found.clear();
     for (std::size_t i = 0; i < made.bodies.size(); ++i) {
-      double above = -numbers.back();
-      for (std::size_t axis = 0; axis < places.axes; ++axis) above += numbers[axis] * places.centre[i][axis];
-      above /= length;
-      const double depth = places.radius[i] - (wall.thin ? std::abs(above) : above);
+      const double depth = places.depth_in_wall(i, normal, numbers.back() / length, wall.thin);
       if (depth > least_depth * places.radius[i] && !made.bodies[i].fixed) found.push_back({i, i, depth});
     }
     if (found.empty()) continue;
@@ -128,16 +126,7 @@ void look_at_groups(const WorldText& text, const WorldAtWork& work, Report& repo
 /// E295, with the parameters as the text has them.
 void look_at_start(const Model& model, const WorldDescription& made, Report& report) {
   const std::vector<double> variables = start_values(model);
-  std::vector<NodeId> nodes;
-  for (const BodyDescription& body : made.bodies) nodes.push_back(body.radius);
-  Places places{
-      .axes = static_cast<std::size_t>(made.dimension), .centre = {}, .radius = evaluate(model, nodes, variables)};
-  for (const BodyDescription& body : made.bodies) {
-    std::array<double, 3> centre{};
-    for (std::size_t axis = 0; axis < places.axes; ++axis)
-      centre[axis] = variables[model.layout.states + body.first_state + 2 * axis];
-    places.centre.push_back(centre);
-  }
+  const Places places(model, made, variables);
   look_at_bodies(made, places, report);
   look_at_walls(model, made, places, variables, report);
 }

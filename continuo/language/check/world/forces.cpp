@@ -46,6 +46,8 @@ void Forces::refuse_measures(const Model& model) {
       for (const NodeId component : load.components)
         if (component.valid()) refuse_measures(component, load.span);
   }
+  for (const JointDescription& joint : work_.made.joints)
+    if (joint.motor_speed.valid()) refuse_measures(joint.motor_speed, joint.span);
   for (const Mode& mode : model.modes) {
     for (std::size_t i = 0; i < std::min(mode.derivatives.size(), model.states.size()); ++i) {
       if (!model.states[i].in_world) refuse_measures(mode.derivatives[i], model.states[i].span);

@@ -16,7 +16,7 @@ class Forces {
         work_(work),
         numbers_(expressions, work) {}
 
-  /// E226 where a force or a derivative depends on a measure of the world.
+  /// E226 where a force, a motor or a derivative depends on a measure of the world.
   void make(const Model& model);
 
  private:

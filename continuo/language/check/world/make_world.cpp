@@ -5,6 +5,7 @@
 
 #include <continuo/language/check/world/bodies.hpp>
 #include <continuo/language/check/world/body_names.hpp>
+#include <continuo/language/check/world/joints.hpp>
 #include <continuo/language/check/world/make_world.hpp>
 #include <continuo/language/check/world/springs.hpp>
 #include <continuo/language/check/world/walls.hpp>
@@ -14,7 +15,7 @@ namespace continuo::model::detail {
 
 namespace {
 
-/// Walls, springs and fixed bodies: what is named after the bodies are there.
+/// Walls, springs, fixed bodies and joints: what is named after the bodies are there.
 void make_items(Expressions& expressions, WorldAtWork& work, const std::vector<State>& states) {
   Walls walls(expressions, work);
   Springs springs(expressions, work, states);
@@ -35,6 +36,7 @@ void make_items(Expressions& expressions, WorldAtWork& work, const std::vector<S
         },
         item.text->node);
   }
+  Joints(expressions, work, states).make();
 }
 
 }  // namespace
@@ -55,6 +57,7 @@ void make_world(Expressions& expressions, WorldAtWork& work, Model& model) {
   Bodies(expressions, work, states).make();
   work.stage = Stage::bodies_made;
   make_items(expressions, work, states);
+  WorldSettings(expressions, work).settle_mode();
   const NodeId zero = workspace.graph.constant(0);
   for (std::size_t i = made.first_measure; i < states.size(); ++i) states[i].initial = zero;
   for (State& state : states) {  // of bodies that could not be read

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -74,6 +75,8 @@ std::optional<Queries::ThingPairs> Queries::pairs_of(const ast::Call& node, std:
     for (std::size_t i = 0; i < text_.bodies.size(); ++i) to.push_back(thing_of(i));
     for (std::size_t w = 0; w < work_.made.walls.size(); ++w) to.push_back({.wall = w});
   }
+  for (const std::vector<Thing>* things : {&*from, &std::as_const(to)})
+    if (!are_balls(*things, node.callee.text, span)) return std::nullopt;
   ThingPairs pairs;
   for (const Thing& a : *from) {
     for (const Thing& b : to) {
@@ -86,6 +89,18 @@ std::optional<Queries::ThingPairs> Queries::pairs_of(const ast::Call& node, std:
   report_.fail("E225", span, "there is nothing to look at", "a body does not look at itself",
                "name another body, a wall or a point");
   return std::nullopt;
+}
+
+/// E225 where a surface is meant that has no formula here.
+bool Queries::are_balls(const std::vector<Thing>& things, std::string_view query, Span span) const {
+  const auto other = std::ranges::find_if(things, [&](const Thing& thing) {
+    return thing.body != no_body && work_.made.bodies[thing.body].shape.kind != ShapeDescription::Kind::ball;
+  });
+  if (other == things.end()) return true;
+  report_.fail("E225", span, fmt::format("`{}` knows balls, walls and points", query),
+               fmt::format("`{}` is none of these", work_.made.bodies[other->body].name),
+               "name the balls that are meant, or a point of the body");
+  return false;
 }
 
 std::optional<std::vector<Thing>> Queries::things(const ast::Expression& text, Scope& scope) const {

@@ -29,6 +29,7 @@ struct WorldAtWork {
   MaterialDescription material{};       // of what names none
   std::vector<ToJudge> to_judge{};
   WorldDescription made{};
+  std::vector<std::size_t> joint_texts{};  // of made.joints, in WorldText::joints
   Stage stage = Stage::declared;
 };
 

@@ -1,6 +1,8 @@
 // continuo/language/check/world/world_declarations.cpp
 // A body makes six states in the plane, thirteen in space.
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -67,6 +69,8 @@ void WorldDeclarations::declare_items(const std::vector<ast::WorldItem>& items, 
       world_.bodies.back().scope = scope;
     } else if (const auto* bodies = std::get_if<ast::WorldBodies>(&item.node)) {
       declare_pattern(*bodies, scope, item.span);
+    } else if (const auto* joint = std::get_if<ast::WorldJoint>(&item.node)) {
+      declare_joint(*joint, scope, item.span);
     } else {
       world_.items.push_back({&item, scope, item.span});
     }
@@ -121,6 +125,16 @@ bool WorldDeclarations::declare_body(const std::string& name, std::span<const lo
   return true;
 }
 
+void WorldDeclarations::declare_joint(const ast::WorldJoint& joint, Scope& scope, Span span) {
+  const ast::Name& name = joint.name ? *joint.name : joint.first;
+  const auto indices = expressions_.indices.indices_of(name, scope);
+  if (!indices) return;
+  if (joint.name && !declared_.symbols.declare(name.text, *indices, Scope::no_mode,
+                                               {Symbol::Kind::joint, world_.joints.size(), name.span}, report_))
+    return;
+  world_.joints.push_back({&joint, scope, span, indexed(name.text, *indices), name.text});
+}
+
 void WorldDeclarations::add_base(const std::string& name, std::string_view family, int order, Span span) {
   declared_.symbols.add(name, Symbol{Symbol::Kind::base, declared_.bases.size(), span});
   declared_.bases.push_back({.name = name, .family = family, .order = order, .span = span, .in_world = true});
@@ -129,7 +143,22 @@ void WorldDeclarations::add_base(const std::string& name, std::string_view famil
 /// Behind the states of the equations.
 void WorldDeclarations::declare_measures() {
   if (!world_.text) return;
-  for (const std::string& name : world_measures(world_.dimension)) add_base("world." + name, "world", 1, world_.span);
+  for (const std::string& name : world_measures(world_.dimension)) add_measure("world." + name, "world", world_.span);
+  std::map<std::string, int> without_name;  // of a first body
+  for (const JointText& joint : world_.joints)
+    if (!joint.is_named()) ++without_name[joint.name];
+  for (JointText& joint : world_.joints) {
+    if (!joint.is_named() && without_name[joint.name] > 1) continue;  // which of them would `door.torque` mean?
+    joint.base = declared_.bases.size();
+    for (const std::string& member :
+         joint_measures(joint.text->kind.text, world_.dimension, joint.is_named(), joint.has_motor()))
+      add_measure(joint.name + "." + member, joint.family, joint.span);
+  }
+}
+
+void WorldDeclarations::add_measure(const std::string& name, std::string_view family, Span span) {
+  add_base(name, family, 1, span);
+  declared_.bases.back().is_measure = true;
 }
 
 }  // namespace continuo::model::detail

@@ -17,7 +17,7 @@ class WorldDeclarations {
 
   /// Their states are the first of the model.
   void declare(const ast::Model& tree);
-  /// `world.kinetic` and its like, behind the states of the equations.
+  /// `world.kinetic`, `door.torque` and their like, behind the states of the equations.
   void declare_measures();
 
  private:
@@ -26,6 +26,8 @@ class WorldDeclarations {
   void declare_items(const std::vector<ast::WorldItem>& items, Scope& scope);
   [[nodiscard]] bool declare_body(const std::string& name, std::span<const long> indices, Span span);
   void declare_pattern(const ast::WorldBodies& bodies, Scope& scope, Span span);
+  void declare_joint(const ast::WorldJoint& joint, Scope& scope, Span span);
+  void add_measure(const std::string& name, std::string_view family, Span span);
   void add_base(const std::string& name, std::string_view family, int order, Span span);
 
   Declarations& declared_;

@@ -1,5 +1,7 @@
 // continuo/language/check/world/world_names.cpp
 // What expressions ask of a world; E223 and E224 where there is no such body or member.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <continuo/language/check/world/members.hpp>
@@ -25,12 +27,13 @@ Value WorldNames::member(const ast::Name& name, Scope& scope, Expressions& expre
   const IndexedName owner_name{name.text, indexed_name->indices};
   const std::string owner_key = owner_name.text();
   const Symbol* symbol = declared_.symbols.find(owner_name, scope.mode);
-  if (symbol && symbol->kind == Symbol::Kind::body) return own_of_body(name, symbol->index, expressions);
+  if (symbol && symbol->kind == Symbol::Kind::body) return own_of_body(name, symbol->index, scope, expressions);
+  if (symbol && symbol->kind == Symbol::Kind::joint) return no_member_of_joint(name, symbol->index, expressions);
   if (expressions.report.is_silent()) return expressions.operations.bad();
   if (name.text == "world") return no_member_of_world(name, key, expressions);
   if (symbol) {
     expressions.report.fail("E224", name.span, fmt::format("`{}` is no body", owner_key), {},
-                            "only bodies of a world have a point");
+                            "only bodies and joints of a world have a point");
     return expressions.operations.bad();
   }
   if (declared_.symbols.family(name.text) || declared_.symbols.is_lost(name.text))
@@ -43,7 +46,7 @@ Value WorldNames::member(const ast::Name& name, Scope& scope, Expressions& expre
   return expressions.operations.bad();
 }
 
-Value WorldNames::own_of_body(const ast::Name& name, std::size_t body, Expressions& expressions) const {
+Value WorldNames::own_of_body(const ast::Name& name, std::size_t body, Scope& scope, Expressions& expressions) const {
   const bool known = name.member == "radius" || name.member == "mass";
   if (known && name.primes == 0) {
     if (work_.stage == Stage::declared) {
@@ -57,16 +60,49 @@ Value WorldNames::own_of_body(const ast::Name& name, std::size_t body, Expressio
     return name.member == "mass" ? Value{.node = made.mass, .measured = work_.mass}
                                  : Value{.node = made.radius, .measured = work_.length};
   }
+  if (declared_.world.dimension == 2 && name.member == "spin" && name.primes == 0) {
+    ast::Name rate = name;
+    rate.member = "angle";
+    rate.primes = 1;
+    const Symbol* angle = declared_.symbols.find_of_world(declared_.world.bodies[body].name + ".angle");
+    return expressions.lookup.derivative(rate, angle->index, scope);
+  }
   std::vector<std::string> names;
   for (const Member& member : members_of(declared_.world.dimension)) {
     for (int k = 0; k < member.order; ++k) names.push_back(with_primes(member.name, k));
   }
+  if (declared_.world.dimension == 2) names.emplace_back("spin");
   names.insert(names.end(), {"radius", "mass"});
+  const std::string& owner = declared_.world.bodies[body].name;
+  std::size_t without_name = 0;
+  for (const JointText& joint : declared_.world.joints) {
+    if (joint.is_named() || joint.name != owner) continue;
+    const std::vector<std::string> of_joint =
+        joint_measures(joint.text->kind.text, declared_.world.dimension, false, joint.has_motor());
+    if (++without_name == 1) names.insert(names.end(), of_joint.begin(), of_joint.end());
+    if (joint.base != JointText::no_base || std::ranges::find(of_joint, name.member) == of_joint.end()) continue;
+    expressions.report.fail("E224", name.span, fmt::format("`{}` has several joints", owner),
+                            fmt::format("whose {}?", name.member),
+                            fmt::format("give the joint a name: {} pin: {} to ..., and read pin.{}",
+                                        joint.text->kind.text, owner, name.member));
+    return expressions.operations.bad();
+  }
   const std::string near = did_you_mean(name.member, names);
   std::string all;
   for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
   expressions.report.fail("E224", name.span, fmt::format("a body has no `{}`", with_primes(name.member, name.primes)),
                           {}, near.empty() ? "it has " + all : near);
+  return expressions.operations.bad();
+}
+
+Value WorldNames::no_member_of_joint(const ast::Name& name, std::size_t joint, Expressions& expressions) const {
+  const JointText& text = declared_.world.joints[joint];
+  const std::string& kind = text.text->kind.text;
+  const std::vector<std::string> names = joint_measures(kind, declared_.world.dimension, true, text.has_motor());
+  const std::string near = did_you_mean(name.member, names);
+  expressions.report.fail("E224", name.span,
+                          fmt::format("a {} has no `{}`", kind, with_primes(name.member, name.primes)), {},
+                          near.empty() ? "it has " + listed(names) : near);
   return expressions.operations.bad();
 }
 

@@ -16,7 +16,9 @@ class WorldNames : public WorldExpressions {
   [[nodiscard]] Value query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const override;
 
  private:
-  [[nodiscard]] Value own_of_body(const ast::Name& name, std::size_t body, Expressions& expressions) const;
+  [[nodiscard]] Value own_of_body(const ast::Name& name, std::size_t body, Scope& scope,
+                                  Expressions& expressions) const;
+  [[nodiscard]] Value no_member_of_joint(const ast::Name& name, std::size_t joint, Expressions& expressions) const;
   [[nodiscard]] Value no_member_of_world(const ast::Name& name, const std::string& key, Expressions& expressions) const;
 
   const Declarations& declared_;

@@ -132,6 +132,24 @@ void WorldSettings::read_mode(const ast::WorldSetting& setting, Scope& scope) {
   if (const ast::Expression* text = attribute(setting.attributes, "integrator")) read_integrator(*text);
 }
 
+void WorldSettings::settle_mode() {
+  WorldDescription& made = work_.made;
+  if (!made.needs_fast_motion()) return;
+  const ast::WorldSetting* named = nullptr;
+  for (const auto& item : text_.items) {
+    const auto* setting = std::get_if<ast::WorldSetting>(&item.text->node);
+    if (setting && setting->word.text == "mode") named = setting;
+  }
+  if (named && !made.mode.fast)
+    report_.fail("E264", named->value->span, "the exact mode moves balls without joints",
+                 "other bodies, driven ones and joints are moved by the fast mode", "write mode fast step 1/60");
+  const ast::Expression* integrator = named ? attribute(named->attributes, "integrator") : nullptr;
+  if (integrator && made.mode.integrator != "semi_implicit_euler")
+    report_.fail("E264", integrator->span, fmt::format("`{}` moves balls without joints", made.mode.integrator),
+                 "other bodies, and joints, are moved by semi_implicit_euler", "leave `integrator` out");
+  made.mode.fast = true;
+}
+
 void WorldSettings::read_integrator(const ast::Expression& text) {
   WorldMode& mode = work_.made.mode;
   const std::vector<std::string> names = world_integrators();

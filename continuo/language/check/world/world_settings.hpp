@@ -18,6 +18,8 @@ class WorldSettings {
 
   /// Before the bodies: they build upon these.
   void make();
+  /// After them: what only the fast motion moves has it, unless the mode is named. E264 where it does not fit.
+  void settle_mode();
 
  private:
   void read(const ast::WorldSetting& setting, Scope& scope);

@@ -25,6 +25,8 @@ Measured stated_length(Expressions& expressions, WorldAtWork& work) {
   const auto look_in = [&](const ast::WorldAttributes& attributes, const Scope& scope) {
     for (const ast::WorldAttribute& attribute : attributes) {
       if (attribute.name.text == "at" || attribute.name.text == "from") look(attribute.value, scope);
+      if (attribute.name.text != "hull") continue;
+      for (const ast::Expression& corner : std::get<ast::List>(attribute.value.node).items) look(corner, scope);
     }
   };
   const ast::WorldBody* last = nullptr;
@@ -49,6 +51,7 @@ void measure_world(Expressions& expressions, WorldAtWork& work) {
   const Measured length = work.length, none = Measured::unknown();
   const Measured pure = length.is_known() ? Measured::known(Unit()) : none;
   const Measured momentum = product(work.mass, expressions.workspace.time.per_time(length));
+  const Measured force = expressions.workspace.time.per_time(momentum);
   const Measured energy = product(momentum, expressions.workspace.time.per_time(length));
   for (const Base& base : expressions.workspace.declared.bases) {
     if (!base.in_world) continue;
@@ -56,6 +59,10 @@ void measure_world(Expressions& expressions, WorldAtWork& work) {
     Measured measured = length;
     if (base.family == "world") {
       measured = member == "collisions" ? none : member.starts_with("momentum") ? momentum : energy;
+    } else if (base.is_measure && (member.starts_with("force") || member == "motor_force")) {
+      measured = force;
+    } else if (base.is_measure && (member.starts_with("torque") || member == "motor_torque")) {
+      measured = energy;
     } else if (member == "angle" || member.starts_with("q_")) {
       measured = pure;
     } else if (member.starts_with("spin")) {

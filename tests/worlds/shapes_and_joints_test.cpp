@@ -1,0 +1,242 @@
+// Bodies of every shape and joints in the language: held against closed forms, and against the solids of shapes/.
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <tests/worlds/scene.hpp>
+
+#include <continuo/shapes/solid.hpp>
+
+namespace continuo::worlds::shapes_and_joints_test {
+namespace {
+
+const WorldOptions fast{.method = "fast", .step = 1.0 / 240};
+
+double value_of(const model::Model& model, model::NodeId node) {
+  return evaluate(model, node, start_values(model));
+}
+
+/// The mass of a body of density 3 and its radius are those of the solid that shapes/ makes of it.
+template <int Dim>
+void expect_solid(const std::string& text, const Shape<double, Dim>& shape) {
+  const std::string zeros = Dim == 2 ? "(0, 0)" : "(0, 0, 0)";
+  const auto program =
+      program_of(fmt::format("world {{ dimension {}\n body it at {} {} density 3 }}\nrun 0..1\n", Dim, zeros, text));
+  const auto made = solid<double, Dim>(shape);
+  ASSERT_TRUE(made) << made.status().message;
+  const model::BodyDescription& body = program->model.world->bodies[0];
+  EXPECT_NEAR(value_of(program->model, body.mass), 3 * made->volume, 1e-12 * made->volume) << text;
+  EXPECT_NEAR(value_of(program->model, body.radius), made->reach, 1e-12 * made->reach) << text;
+  const model::State& x = program->model.states[body.first_state];
+  EXPECT_NEAR(value_of(program->model, x.initial), made->centre[0], 1e-12 * made->reach) << text;
+}
+
+TEST(ShapesAndJoints, MassAndRadiusAreThoseOfTheSolid) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> size(0.5, 3), part(0, 0.24);
+  for (int k = 0; k < 5; ++k) {
+    const double a = size(random), b = size(random), c = size(random), r = part(random);
+    expect_solid<2>(fmt::format("box ({}, {}) rounding {}", a, b, r), Box<double, 2>{{{a, b}}, r});
+    expect_solid<3>(fmt::format("box ({}, {}, {}) rounding {}", a, b, c, r), Box<double, 3>{{{a, b, c}}, r});
+    expect_solid<2>(fmt::format("capsule {} radius {}", a, b), Capsule<double>{a, b});
+    expect_solid<3>(fmt::format("capsule {} radius {}", a, b), Capsule<double>{a, b});
+    expect_solid<2>(fmt::format("hull (0, 0) ({}, 0) ({}, {}) (0, {}) rounding {}", a, a, b, c, r),
+                    Hull<double, 2>{{{{0, 0}}, {{a, 0}}, {{a, b}}, {{0, c}}}, r});
+    expect_solid<3>(fmt::format("hull (0, 0, 0) ({}, 0, 0) (0, {}, 0) (0, 0, {})", a, b, c),
+                    Hull<double, 3>{{{{0, 0, 0}}, {{a, 0, 0}}, {{0, b, 0}}, {{0, 0, c}}}, 0});
+  }
+}
+
+// The corners of a hull are in a frame with its origin at `at`; its place is that of the centre of mass, here (1, 1)
+// from the origin, turned by a right angle.
+TEST(ShapesAndJoints, HullsStandWhereTheirCornersAre) {
+  const auto run = started(
+      "world { mode fast step 1/60\n body a at (5, 0) hull (0, 0) (3, 0) (0, 3) angle 90 [deg]\n"
+      "body b hull (7, 0) (10, 0) (7, 3) }\nrun 0..1\n",
+      fast);
+  EXPECT_NEAR(run->position(0)[0], 4, 1e-14);
+  EXPECT_NEAR(run->position(0)[1], 1, 1e-14);
+  EXPECT_NEAR(run->position(1)[0], 8, 1e-14);
+  EXPECT_NEAR(run->position(1)[1], 1, 1e-14);
+  ASSERT_EQ(run->bodies()[0].form, 0U);
+  ASSERT_EQ(run->forms()[0].corners.size(), 3U);
+  EXPECT_NEAR(run->forms()[0].corners[0][0], -1, 1e-14);  // in the frame of the body
+}
+
+// A bar of 2 m and 3 kg whose end is held by a motor at rest: m g on the pin, m g l/2 about it.
+TEST(ShapesAndJoints, AHingeTellsWhatItBears) {
+  const model::Run run = run_of(R"(
+world {
+  gravity (0, -10) [m/s^2]
+  mode fast step 1/240
+  body bar at (1, 0) [m] box (2, 0.1) mass 3
+  hinge pin: bar at (0, 0) motor 0 torque at most 100 [N m]
+}
+output load = pin.force_y, moment = pin.torque, brake = pin.motor_torque, turned = pin.angle
+run 0..1 [s]
+check load at end = 30 [N] within 1e-6
+check moment at end = 30 [N m] within 1e-6
+check brake at end = 30 [N m] within 1e-6
+check abs(turned) at end < 1e-6
+check bar.spin at end = 0 within 1e-6
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+// Without a name, what a joint bears is asked of its first body. A weld holds the weight m g = 20 at half a metre.
+TEST(ShapesAndJoints, AJointWithoutANameSpeaksThroughItsBody) {
+  const model::Run run = run_of(R"(
+world {
+  gravity (0, -10)
+  mode fast step 1/240
+  body board at (0.5, 0) box (1, 1) mass 2
+  weld board at (0, 0)
+}
+run 0..1
+check board.force_y at end = 20 within 1e-6
+check board.torque at end = 10 within 1e-6
+check board.x at end = 0.5 within 1e-9
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+// The speed of a motor is an expression: its angle is the integral, to the order of the step. Limits stop another one.
+TEST(ShapesAndJoints, MotorsFollowExpressionsAndLimitsStopThem) {
+  const model::Run run = run_of(R"(
+param w = 2
+world {
+  mode fast step 1/240
+  body wheel at (0, 0) box (1, 1)
+  body door at (5.5, 0) box (1, 0.1)
+  body drawer at (10, 0) box (1, 1)
+  hinge axle: wheel at (0, 0) motor w*sin(w*t) torque at most 1000
+  hinge door at (5, 0) limits -30..30 [deg] motor 3 torque at most 10
+  slider rail: drawer axis (1, 0) limits 0..0.5 motor 1 force at most 10
+}
+run 0..2
+check axle.angle at end = 1 - cos(4) within 2/240*2
+check door.angle at end = pi/6 within 1e-6
+check rail.length at end = 0.5 within 1e-6
+check rail.motor_force at end = 10 within 1e-6
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+// A ball of 1 kg hangs on a rope of 1 m: m g. One that falls beside it on a longer rope is caught below.
+TEST(ShapesAndJoints, RopesPullAndDoNotPush) {
+  const model::Run run = run_of(R"(
+world {
+  gravity (0, 0, -10)
+  dimension 3
+  mode fast step 1/240
+  body bob at (0, 0, 1) radius 0.1 mass 1
+  rope line: bob to (0, 0, 2)
+  body low at (3, 0, 1.5) radius 0.1 mass 1
+  rope low to (3, 0, 2) length 1
+}
+run 0..2
+check line.force_z at end = 10 within 1e-6
+check line.length at end = 1 within 1e-6
+check low.z at 0.1 = 1.5 - 10*0.1^2/2 within 10*0.1/2/960*1.01     # a substep of semi-implicit Euler
+check low.z at end = 1 within 1e-3
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+// A driven belt carries a crate with it, and stays what moves it: fixed.
+TEST(ShapesAndJoints, DrivenBodiesCarryOthers) {
+  const model::Run run = run_of(R"(
+world {
+  gravity (0, -10)
+  mode fast step 1/240
+  body belt at (0, 0) box (10, 1) velocity (1, 0) driven
+  body crate at (-3, 1) box (1, 1)
+}
+run 0..2
+check belt.x at end = 2 within 1e-9
+check crate.x' at end = 1 within 1e-6
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+const std::string pendulum = R"(
+param strength = 100, mass_of_bob = 1
+world {
+  gravity (0, -10)
+  mode fast step 1/240
+  body arm at (1, 0) box (2, 0.1) mass mass_of_bob
+  hinge pivot: arm at (0, 0) motor 0 torque at most strength/1000
+}
+run 0..2
+)";
+
+// What a parameter changes is built anew; the joint still holds the arm where it did, not where it is now.
+TEST(ShapesAndJoints, ParametersAreSetWhileTheJointHolds) {
+  const auto run = started(pendulum, fast);
+  ASSERT_TRUE(run->advance_to(0.5));
+  const auto program = program_of(pendulum);
+  ASSERT_TRUE(run->set(program->model.parameters[0].variable, 200));
+  ASSERT_TRUE(run->advance_to(1));
+  const double angle = run->state()[4];
+  EXPECT_LT(angle, -1);
+  EXPECT_NEAR(run->position(0)[0], std::cos(angle), 1e-5);
+  EXPECT_NEAR(run->position(0)[1], std::sin(angle), 1e-5);
+}
+
+TEST(ShapesAndJoints, SnapshotsGoOnToTheSameBits) {
+  const auto run = started(pendulum, fast), again = started(pendulum, fast);
+  ASSERT_TRUE(run->advance_to(0.5));
+  const Snapshot saved = run->snapshot();
+  ASSERT_TRUE(again->check(saved));
+  ASSERT_TRUE(again->restore(saved));
+  ASSERT_TRUE(run->advance_to(1));
+  ASSERT_TRUE(again->advance_to(1));
+  EXPECT_EQ(run->state(), again->state());
+}
+
+// A hand pulls; what it lets go of flies on as it moved, and a snapshot from then has no hand in it.
+TEST(ShapesAndJoints, AHandPullsABodyToItsPlace) {
+  const auto run = started("world { mode fast step 1/240\n body crate at (0, 0) box (1, 1) }\nrun 0..1\n", fast);
+  ASSERT_TRUE(run->is_rigid());
+  run->pull(std::pair<std::size_t, Point>(0, Point{2, 1, 0}));
+  ASSERT_TRUE(run->advance_to(2));
+  EXPECT_NEAR(run->position(0)[0], 2, 1e-3);
+  EXPECT_NEAR(run->position(0)[1], 1, 1e-3);
+  const Snapshot held = run->snapshot();
+  run->pull(std::nullopt);
+  ASSERT_TRUE(run->restore(held));
+  run->set_body(0, {5, 0, 0}, {0, 0, 0});
+  ASSERT_TRUE(run->advance_to(3));
+  EXPECT_EQ(run->position(0)[0], 5);
+}
+
+TEST(ShapesAndJoints, OnlyTheFastMotionIsThereForThem) {
+  const auto program = program_of("world { body crate at (0, 0) box (1, 1) }\nrun 0..1\n");
+  EXPECT_TRUE(program->model.world->mode.fast);
+  const auto exact = simulate_world(program, {.method = "exact", .step = 0.01});
+  ASSERT_EQ(exact.diagnostics.size(), 1U);
+  EXPECT_EQ(exact.diagnostics[0].code, "E334");
+  EXPECT_THAT(exact.diagnostics[0].message, testing::StartsWith("`exact` moves balls without joints"));
+}
+
+// Boxes that touch, or are turned beside each other, do not overlap; those that do are said to, with their depth.
+TEST(ShapesAndJoints, OverlapsAreThoseOfTheShapes) {
+  const auto said = [](const std::string& bodies) {
+    const model::Source source("scene.sim", "world { wall (0, 1) at 0\n" + bodies + "}\nrun 0..1\n");
+    const model::ParseResult parsed = model::parse(source);
+    const model::Checked checked = check(parsed.model, source);
+    return render(checked.diagnostics, source);
+  };
+  EXPECT_EQ(said("body a at (0, 0.5) box (1, 1)\nbody b at (0, 1.5) box (1, 1)\n"), "");
+  EXPECT_EQ(said("body a at (0, 2) box (2, 2)\nbody b at (1.9, 3.9) box (2, 2) angle 45 [deg]\n"), "");
+  EXPECT_THAT(said("body a at (0, 2) box (2, 2)\nbody b at (1.8, 2.5) box (2, 2)\n"), testing::HasSubstr("by 0.2"));
+  EXPECT_THAT(said("body a at (0, 0.4) box (1, 1)\n"), testing::HasSubstr("by 0.1"));
+  EXPECT_THAT(said("body a at (0, 2) capsule 1 radius 0.5\nbody b at (0.9, 2) capsule 1 radius 0.5\n"),
+              testing::HasSubstr("by 0.1"));
+  EXPECT_EQ(said("body a at (0, 2) box (2, 2)\nbody b at (1, 2) box (2, 2)\nhinge a to b at (0, 2)\n"), "");
+}
+
+}  // namespace
+}  // namespace continuo::worlds::shapes_and_joints_test
