@@ -185,7 +185,7 @@ class Simulation {
   }
 
   double next_look() {
-    for (; next_look_ < looks_.size() && looks_[next_look_] <= world_->time(); ++next_look_) {
+    for (; next_look_ < looks_.size() && looks_[next_look_] <= world_->time() + slack(); ++next_look_) {
     }
     return next_look_ < looks_.size() ? looks_[next_look_] : end_time_;
   }

@@ -328,6 +328,18 @@ TEST(MotionCurves, ProfilesOfAFamilyAreThoseOfTheirTimes) {
   EXPECT_EQ(profiles[2].x[2], 3);
 }
 
+// A look that is due at the end of a step, to rounding, is not waited for: here every other one.
+TEST(MotionCurves, AWorldInStepsIsFollowedToItsEnd) {
+  model::Loaded loaded = model::load(model::Source(
+      "model.sim", "world { body ball at (0, 0) velocity (1, 0)\nmode fast step 1/240 }\nplot ball.x\nrun 0..2\n"));
+  ASSERT_TRUE(loaded) << loaded.text();
+  const auto program = model::compile(*std::move(loaded.model));
+  MotionCurves curves(program, plot_requests(program->model));
+  const runs::WatchedRun watched = runs::run(program, {}, {}, curves);
+  ASSERT_TRUE(watched.is_shown);
+  EXPECT_NEAR(curves.curves_of(0).front().path.x.back(), 2, 1e-9);
+}
+
 // A ball that bounces without loss: parabolas of the height 5 with corners at the floor, from rows one second apart.
 TEST(MotionCurves, AWorldFliesInParabolasBetweenItsContacts) {
   model::Loaded loaded =
