@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +17,8 @@
 #include <continuo/language/world.hpp>
 #include <continuo/results/bodies_panel.hpp>
 #include <continuo/results/plots.hpp>
+#include <continuo/shapes/matrix.hpp>
+#include <continuo/worlds/world_shapes.hpp>
 
 namespace continuo::results {
 namespace {
@@ -22,6 +26,7 @@ namespace {
 using Flat = std::array<double, 2>;
 
 constexpr std::size_t most_discs = 3000;
+constexpr std::size_t most_forms = 500;  // of more bodies discs are shown
 constexpr std::string_view still_color = "#8a8a8a";
 
 std::string_view family_of(std::string_view body) {
@@ -99,6 +104,9 @@ class BodiesPanel {
     }
   }
   void add_bodies() {
+    const worlds::Shapes shapes =
+        world_.needs_fast_motion() ? worlds::shapes_of(model_, run_.plan.variables) : worlds::Shapes{};
+    if (!shapes.forms.empty() && world_.bodies.size() <= most_forms) return add_forms(shapes);
     std::vector<model::NodeId> nodes;
     for (const model::BodyDescription& body : world_.bodies) nodes.push_back(body.radius);
     const std::vector<double> radii = evaluate(model_, nodes, run_.plan.variables);
@@ -117,6 +125,59 @@ class BodiesPanel {
       bodies.discs.push_back({body.radius, body.color});
     }
     panel_.curves.push_back(std::move(bodies));
+  }
+  /// From far to near. In the plane all are as near.
+  void add_forms(const worlds::Shapes& shapes) {
+    std::vector<std::size_t> order(world_.bodies.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(nearness(i), i); });
+    const double size = world_.dimension == 2 ? 1 : std::sqrt(1.5);
+    for (const std::size_t i : order) {
+      if (shapes.bodies[i].form == worlds::no_form) {
+        const Flat at = place(i, last_row());
+        Curve disc{.label = "", .x = {at[0]}, .y = {at[1]}, .style = Curve::Style::discs};
+        disc.discs.push_back({shapes.bodies[i].radius * size, color_of_body(i)});
+        panel_.curves.push_back(std::move(disc));
+      } else {
+        add_form(i, shapes.forms[shapes.bodies[i].form]);
+      }
+    }
+  }
+  /// Its faces, in space those that look at us, and their edges.
+  void add_form(std::size_t body, const worlds::BodyForm& form) {
+    Curve area{.label = "", .x = {}, .y = {}, .color = std::string(color_of_body(body)), .style = Curve::Style::area};
+    area.fill = 0.8;
+    const double side = world_.dimension == 2 ? 1 : -1;  // pictures of space have x on the right: they are mirrored
+    for (const std::vector<std::uint32_t>& face : form.faces) {
+      double twice = 0;  // the area as seen: above 0 where it looks at us
+      std::vector<Flat> corners;
+      for (const std::uint32_t corner : face) corners.push_back(place_of(body, form.corners[corner]));
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Flat &a = corners[k], &b = corners[(k + 1) % corners.size()];
+        twice += a[0] * b[1] - a[1] * b[0];
+      }
+      if (!(twice * side > 0)) continue;
+      corners.push_back(corners.front());
+      for (const Flat& at : corners) area.x.push_back(at[0]), area.y.push_back(at[1]);
+      area.x.push_back(NAN), area.y.push_back(NAN);
+    }
+    Curve edges{.label = "", .x = area.x, .y = area.y, .color = "#404040", .style = Curve::Style::thin_line};
+    panel_.curves.push_back(std::move(area));
+    panel_.curves.push_back(std::move(edges));
+  }
+  /// Of a point of the body at the end, in the picture.
+  Flat place_of(std::size_t body, const worlds::Point& local) const {
+    const auto state = [&](std::size_t k) {
+      return run_.motion.row(last_row())[1 + world_.bodies[body].first_state + k];
+    };
+    const Flat centre = place(body, last_row());
+    if (world_.dimension == 2) {
+      const double c = std::cos(state(4)), s = std::sin(state(4));
+      return {centre[0] + c * local[0] - s * local[1], centre[1] + s * local[0] + c * local[1]};
+    }
+    const Vector<double, 3> arm = rotation(Vector<double, 4>{{state(6), state(7), state(8), state(9)}}) *
+                                  Vector<double, 3>{{local[0], local[1], local[2]}};
+    return {centre[0] + right_in_space(arm[0], arm[1]), centre[1] + up_in_space(arm[0], arm[1], arm[2])};
   }
   /// As a picture file has a hundred numbers for a disc, so many are dots.
   void add_dots(const std::vector<Seen>& all) {

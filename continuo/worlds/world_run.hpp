@@ -74,7 +74,8 @@ struct JointShape {
   std::string name, kind;
   std::size_t first, second;  // bodies; second is model::no_body where it is the world
   Point on_first, on_second;
-  Point axis;  // of sliders and wheels, in the frame of the second; else 0
+  Point axis;    // of sliders and wheels, in the frame of the second; else 0
+  double apart;  // the greatest distance of the two places, beyond which it is broken; infinite where it has none
 };
 
 /// An impact, or the beginning or end of a lasting contact.

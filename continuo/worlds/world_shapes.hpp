@@ -2,6 +2,7 @@
 // joints.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <span>
 #include <variant>
@@ -40,6 +41,27 @@ template <int Dim>
 /// The shapes of a model's world with these values of its parameters; nothing where they make none.
 [[nodiscard]] Shapes shapes_of(const model::Model& model, std::span<const double> variables);
 
+/// The greatest distance of the places where an unbroken joint holds its bodies.
+template <int Dim>
+[[nodiscard]] double greatest_gap(const Joint<double, Dim>& joint) {
+  switch (joint.kind) {
+    case JointKind::distance:
+      if (joint.limits) return joint.limits->upper;
+      return joint.spring ? std::numeric_limits<double>::infinity() : joint.length;
+    case JointKind::slider:
+    case JointKind::wheel:
+    case JointKind::gear:
+    case JointKind::pull:
+      return std::numeric_limits<double>::infinity();
+    case JointKind::hinge:
+    case JointKind::ball:
+    case JointKind::weld:
+    case JointKind::universal:
+      break;
+  }
+  return 0;
+}
+
 /// `text` is the description from which the world was built, with these joints; its names have the order of the world.
 template <int Dim>
 [[nodiscard]] Shapes shapes_of(const World<double, Dim>& world, std::span<const JointHandle> joints,
@@ -60,7 +82,8 @@ template <int Dim>
     const model::JointDescription& of = text.joints[k];
     const bool has_axis = joint->kind == JointKind::slider || joint->kind == JointKind::wheel;
     shapes.joints.push_back({of.is_named ? of.name : "", of.kind, of.first, of.second, point_of<Dim>(joint->anchor_b),
-                             point_of<Dim>(joint->anchor_a), has_axis ? point_of<Dim>(joint->axes_a[0]) : Point{}});
+                             point_of<Dim>(joint->anchor_a), has_axis ? point_of<Dim>(joint->axes_a[0]) : Point{},
+                             greatest_gap(*joint)});
   }
   for (std::size_t w = 0; w < world.walls().size(); ++w) {
     const Wall<double, Dim>& wall = world.walls()[w];

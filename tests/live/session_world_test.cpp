@@ -93,6 +93,38 @@ TEST(LiveWorld, ManyBodiesAreBodiesNotColumns) {
   EXPECT_EQ(model["bodies"]["walls"].size(), 1U);
 }
 
+const std::string door =
+    "world {\n  mode fast step 1/240\n  body door at (1, 0) box (2, 0.2)\n  body ball at (5, 0) radius 0.5\n"
+    "  hinge pin: door at (0, 0)\n}\nrun 0..10\n";
+
+TEST(LiveWorld, TellsTheFormsOfBodiesAndTheirJoints) {
+  Stage stage(door);
+  const auto bodies = stage.audience.said("model").back()["bodies"];
+  EXPECT_EQ(bodies["form"], (nlohmann::json{0, nullptr}));
+  EXPECT_EQ(bodies["forms"][0]["corners"].size(), 4U);
+  EXPECT_EQ(bodies["forms"][0]["faces"], (nlohmann::json{{0, 1, 2, 3}}));
+  ASSERT_EQ(bodies["joints"].size(), 1U);
+  EXPECT_EQ(bodies["joints"][0]["on_first"], (nlohmann::json{-1.0, 0.0}));
+  EXPECT_EQ(bodies["joints"][0]["second"], nullptr);
+}
+
+// The hand pulls the centre of the door upwards; the pin holds its end.
+TEST(LiveWorld, AHandPullsWhatAJointHolds) {
+  Stage stage(door);
+  stage.session->play();
+  for (int i = 0; i < 60; ++i) {
+    stage.session->drag_body(0, std::vector<double>{0, 1.5});
+    stage.run(1.0 / 60);
+  }
+  EXPECT_NEAR(stage.state("door.angle"), 1.5708, 0.02);
+  EXPECT_NEAR(stage.state("door.y"), 1, 1e-4);
+  stage.session->release(false);
+  const double before = stage.session->shown_time();
+  stage.run(0.2);
+  EXPECT_GT(stage.session->shown_time(), before);
+  EXPECT_TRUE(stage.audience.said("message").empty());
+}
+
 TEST(LiveWorld, SlowMotionIsShownBetweenSteps) {
   Stage stage(fast);
   stage.session->set_speed(0.1);

@@ -51,6 +51,32 @@ const Curve& discs_of(const Panel& panel) {
   return panel.curves.front();
 }
 
+// A box of 2 by 4, turned by a right angle and moved by 1, is 4 wide and 2 high; the ball beside it is a disc.
+TEST(BodiesPanel, ShowsBoxesAsTheyStand) {
+  const model::Model model = model_of(
+      "world { body crate at (0, 1) [m] box (2, 4) angle 90 [deg]\nbody ball at (5, 1) radius 0.5 fixed }\nrun 0..1\n");
+  const Panel panel = bodies_panel(model, moved_by_one(model));
+  const auto area = std::ranges::find(panel.curves, Curve::Style::area, &Curve::style);
+  ASSERT_NE(area, panel.curves.end());
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < 4; ++i) x.push_back(area->x[i]), y.push_back(area->y[i]);
+  EXPECT_NEAR(std::ranges::min(x), -1, 1e-12);
+  EXPECT_NEAR(std::ranges::max(x), 3, 1e-12);
+  EXPECT_NEAR(std::ranges::min(y), 0, 1e-12);
+  EXPECT_NEAR(std::ranges::max(y), 2, 1e-12);
+  EXPECT_EQ(discs_of(panel).discs.size(), 1U);
+}
+
+// Of a cube in space three faces are seen.
+TEST(BodiesPanel, ShowsTheFacesOfACubeThatLookAtUs) {
+  const model::Model model = model_of("world { dimension 3\nbody crate at (0, 0, 0) box (2, 2, 2) }\nrun 0..1\n");
+  const Panel panel = bodies_panel(model, moved_by_one(model));
+  const auto area = std::ranges::find(panel.curves, Curve::Style::area, &Curve::style);
+  ASSERT_NE(area, panel.curves.end());
+  EXPECT_EQ(std::ranges::count_if(area->x, [](double x) { return std::isnan(x); }), 3);
+  EXPECT_EQ(area->x.size(), 3U * 6);
+}
+
 TEST(BodiesPanel, ShowsBodiesAsLargeAsTheyAreAndTheirWays) {
   const model::Model model = model_of(
       "world { wall floor (0, 2) at 3\nwall (1, 1) at -1000\nbody ball at (1, 2) [m] radius 0.5\n"

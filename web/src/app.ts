@@ -344,6 +344,7 @@ export class App {
       { keys: ["d"], words: "select the next movable object, or the next body", group: "Scene", run: () => void hand.selectNext() },
       { ...arrow("ArrowUp", 0, 1, "drag the selected object", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
       arrow("ArrowDown", 0, -1, "", "Scene"),
+      { keys: ["j"], words: "joints of bodies", group: "Scene", run: () => void this.scene.toggleJoints() },
       { keys: ["a"], words: "arrows for velocity and acceleration", group: "Scene", run: () => this.toggleVectors() },
       { keys: ["x"], words: "the grid", group: "Scene", run: () => {
         this.scene.gridShown = !this.scene.gridShown;

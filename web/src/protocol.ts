@@ -27,6 +27,23 @@ export interface Item {
   /** Of a trail: where its point stands among the numbers that frames have for each row. */
   path?: number[] | null;
 }
+/** The surface of a body that is no ball, in its frame: faces by the numbers of their corners, counter-clockwise seen from outside. */
+export interface Form {
+  corners: number[][];
+  faces: number[][];
+}
+/** Where it holds its bodies in their frames; of the world, where `second` is null, in the world. */
+export interface Joint {
+  name: string;
+  kind: string;
+  first: number;
+  second: number | null;
+  on_first: number[];
+  on_second: number[];
+  axis: number[];
+  /** The greatest distance of the two places, beyond which it is broken; null: none. */
+  apart: number | null;
+}
 export interface Bodies {
   count: number;
   dimension: 2 | 3;
@@ -37,6 +54,10 @@ export interface Bodies {
   containers: { lower: number[]; upper: number[] }[];
   /** Between bodies a and b, or from body a to a point. */
   springs?: { a: number; b: number | null; point: number[] | null }[];
+  forms?: Form[];
+  /** Of each body the number of its form, null of a ball; empty where all are balls. */
+  form?: (number | null)[];
+  joints?: Joint[];
 }
 export interface Parameter {
   name: string;

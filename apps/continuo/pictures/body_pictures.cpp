@@ -1,4 +1,4 @@
-// gnuplot commands for spheres, discs, walls and springs.
+// gnuplot commands for spheres, discs, polygons, polyhedra, walls, springs and joints.
 #include <array>
 #include <cstdint>
 #include <numeric>
@@ -15,8 +15,9 @@ using worlds::dot, worlds::Point;
 // Colours as numbers, which `lc rgb variable` wants: the first of the curves', as on the page.
 constexpr std::array<std::uint32_t, 5> colors_of_bodies = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00};
 constexpr std::uint32_t still = 0x8A8A8A, white = 0xFFFFFF, black = 0x000000;
-constexpr std::string_view wall_color = "#e9e9e9", edge_color = "#8a8a8a";
+constexpr std::string_view wall_color = "#e9e9e9", edge_color = "#8a8a8a", joint_color = "#303030";
 constexpr std::string_view as_circles = "using 1:2:3:4 with circles lc rgb variable fs solid noborder";
+constexpr std::string_view as_polygons = "using 1:2:3 with filledcurves closed fc rgb variable";
 
 std::uint32_t mixed(std::uint32_t a, std::uint32_t b, double part) {
   std::uint32_t color = 0;
@@ -48,7 +49,12 @@ Point turned(const float* q, const Point& v) {
 }  // namespace
 
 BodyPictures::BodyPictures(const worlds::WorldRun& world)
-    : dimension_(world.dimension()), shapes_(world.bodies()), walls_(world.walls()), springs_(world.springs()) {
+    : dimension_(world.dimension()),
+      shapes_(world.bodies()),
+      walls_(world.walls()),
+      springs_(world.springs()),
+      forms_(world.forms()),
+      joints_(world.joints()) {
   lower_.fill(std::numeric_limits<double>::infinity());
   upper_.fill(-std::numeric_limits<double>::infinity());
 }
@@ -161,55 +167,176 @@ void BodyPictures::draw_springs(const live::Bodies& bodies, PictureParts& parts)
   parts.curve(fmt::format("with lines lw 1.5 lc rgb '{}'", edge_color), lines);
 }
 
+std::uint32_t BodyPictures::color_of(std::size_t i) const {
+  return shapes_[i].fixed ? still : colors_of_bodies[i % colors_of_bodies.size()];
+}
+
+/// A vector of body i in the directions of the world.
+Point BodyPictures::turned_by(const live::Bodies& bodies, std::size_t i, const Point& v) const {
+  if (dimension_ == 3) return turned(&bodies.orientation[4 * i], v);
+  const double angle = static_cast<double>(bodies.orientation[i]), c = std::cos(angle), s = std::sin(angle);
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1], 0};
+}
+
+/// A point of a body, or of the world where it is no body.
+Point BodyPictures::placed(const live::Bodies& bodies, std::size_t body, const Point& local) const {
+  if (body == model::no_body) return local;
+  Point p = place(bodies, body);
+  const Point arm = turned_by(bodies, body, local);
+  for (std::size_t k = 0; k < 3; ++k) p[k] += arm[k];
+  return p;
+}
+
 void BodyPictures::draw_discs(const live::Bodies& bodies, PictureParts& parts) const {
   std::string discs, marks;
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    if (shapes_[i].form != worlds::no_form) continue;
     const Flat at = flat(place(bodies, i));
     const double radius = shapes_[i].radius, angle = static_cast<double>(bodies.orientation[i]);
-    const std::uint32_t color = shapes_[i].fixed ? still : colors_of_bodies[i % colors_of_bodies.size()];
+    const std::uint32_t color = color_of(i);
     discs += circle(at, radius, mixed(color, black, 0.35)) + circle(at, 0.92 * radius, color);
     if (!shapes_[i].fixed)
       marks += fmt::format("{:.7g} {:.7g}\n{:.7g} {:.7g}\n\n", at.x, at.y, at.x + 0.9 * radius * std::cos(angle),
                            at.y + 0.9 * radius * std::sin(angle));
   }
-  parts.curve(as_circles, discs);
+  if (!discs.empty()) parts.curve(as_circles, discs);
   if (!marks.empty()) parts.curve("with lines lw 1.5 lc rgb 'white'", marks);
 }
 
-/// From the farthest to the nearest, each with the light from the upper left, and two dark poles that turn with it.
-void BodyPictures::draw_spheres(const live::Bodies& bodies, PictureParts& parts) const {
+/// Each with its edge, so that it hides those before it; of very many, all edges together.
+void BodyPictures::draw_polygons(const live::Bodies& bodies, PictureParts& parts) const {
+  constexpr std::size_t few = 200;
+  std::string areas, edges;
+  const auto flush = [&] {
+    if (areas.empty()) return;
+    parts.curve(as_polygons, areas);
+    parts.curve("using 1:2:3 with lines lw 1.5 lc rgb variable", edges);
+    areas.clear(), edges.clear();
+  };
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    if (shapes_[i].form == worlds::no_form) continue;
+    const worlds::BodyForm& form = forms_[shapes_[i].form];
+    for (const std::vector<std::uint32_t>& face : form.faces) {
+      for (std::size_t k = 0; k <= face.size(); ++k) {
+        const Flat at = flat(placed(bodies, i, form.corners[face[k % face.size()]]));
+        areas += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, color_of(i));
+        edges += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, mixed(color_of(i), black, 0.35));
+      }
+      areas += '\n', edges += '\n';
+    }
+    if (shapes_.size() <= few) flush();
+  }
+  flush();
+}
+
+/// The faces that look at us, lit from the upper left. They do not hide each other, since it is convex.
+std::string BodyPictures::polyhedron(const live::Bodies& bodies, std::size_t i) const {
+  constexpr Point light = {-0.150, 0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left; of length 1
+  const worlds::BodyForm& form = forms_[shapes_[i].form];
+  std::string text;
+  for (const std::vector<std::uint32_t>& face : form.faces) {
+    const Point &a = form.corners[face[0]], &b = form.corners[face[1]], &c = form.corners[face[2]];
+    const Point u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
+    Point normal =
+        turned_by(bodies, i, {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
+    const double size = std::sqrt(dot(normal, normal));
+    if (!(size > 0) || !(nearness_of(normal[0], normal[1], normal[2]) > 0)) continue;
+    const double lit = dot(normal, light) / size;
+    const std::uint32_t color =
+        lit > 0.5 ? mixed(color_of(i), white, 0.5 * (lit - 0.5)) : mixed(color_of(i), black, 0.5 * (0.5 - lit));
+    for (std::size_t k = 0; k <= face.size(); ++k) {
+      const Flat at = flat(placed(bodies, i, form.corners[face[k % face.size()]]));
+      text += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, color);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// With the light from the upper left, and two dark poles that turn with it.
+std::string BodyPictures::sphere(const live::Bodies& bodies, std::size_t i) const {
   constexpr std::size_t few = 2000;  // beyond they are too small for poles
+  const Point p = place(bodies, i);
+  const Flat at = flat(p);
+  const double radius = radius_of(i);
+  const std::uint32_t color = color_of(i);
+  std::string text = circle(at, radius, mixed(color, black, 0.45));
+  text += circle({at.x - 0.06 * radius, at.y + 0.07 * radius}, 0.9 * radius, color);
+  text += circle({at.x - 0.2 * radius, at.y + 0.24 * radius}, 0.55 * radius, mixed(color, white, 0.25));
+  text += circle({at.x - 0.3 * radius, at.y + 0.36 * radius}, 0.25 * radius, mixed(color, white, 0.6));
+  if (shapes_.size() > few) return text;
+  for (const double side : {0.87, -0.87}) {
+    const Point pole = turned(&bodies.orientation[4 * i], {side, 0, 0});
+    if (!(nearness_of(pole[0], pole[1], pole[2]) > 0)) continue;
+    const double r = shapes_[i].radius;
+    text += circle(flat({p[0] + r * pole[0], p[1] + r * pole[1], p[2] + r * pole[2]}), 0.13 * radius,
+                   mixed(color, black, 0.7));
+  }
+  return text;
+}
+
+/// From the farthest to the nearest; spheres that follow each other are one curve.
+void BodyPictures::draw_in_space(const live::Bodies& bodies, PictureParts& parts) const {
   std::vector<std::size_t> order(shapes_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) {
     const Point p = place(bodies, i);
     return nearness_of(p[0], p[1], p[2]);
   });
-  std::string spheres;
+  std::string text;
+  bool are_spheres = true;
+  const auto flush = [&] {
+    if (!text.empty()) parts.curve(are_spheres ? as_circles : as_polygons, text);
+    text.clear();
+  };
   for (const std::size_t i : order) {
-    const Point p = place(bodies, i);
-    const Flat at = flat(p);
-    const double radius = radius_of(i);
-    const std::uint32_t color = shapes_[i].fixed ? still : colors_of_bodies[i % colors_of_bodies.size()];
-    spheres += circle(at, radius, mixed(color, black, 0.45));
-    spheres += circle({at.x - 0.06 * radius, at.y + 0.07 * radius}, 0.9 * radius, color);
-    spheres += circle({at.x - 0.2 * radius, at.y + 0.24 * radius}, 0.55 * radius, mixed(color, white, 0.25));
-    spheres += circle({at.x - 0.3 * radius, at.y + 0.36 * radius}, 0.25 * radius, mixed(color, white, 0.6));
-    if (shapes_.size() > few) continue;
-    for (const double side : {0.87, -0.87}) {
-      const Point pole = turned(&bodies.orientation[4 * i], {side, 0, 0});
-      if (!(nearness_of(pole[0], pole[1], pole[2]) > 0)) continue;
-      const double r = shapes_[i].radius;
-      spheres += circle(flat({p[0] + r * pole[0], p[1] + r * pole[1], p[2] + r * pole[2]}), 0.13 * radius,
-                        mixed(color, black, 0.7));
+    const bool is_sphere = shapes_[i].form == worlds::no_form;
+    if (is_sphere != are_spheres) flush();
+    are_spheres = is_sphere;
+    text += is_sphere ? sphere(bodies, i) : polyhedron(bodies, i);
+  }
+  flush();
+}
+
+/// Pins as small rings, ropes and distances as lines between their ends, guides as lines along their axes.
+void BodyPictures::draw_joints(const live::Bodies& bodies, PictureParts& parts) const {
+  std::string lines, pins;
+  const auto line = [&](const Point& from, const Point& to) {
+    const Flat a = flat(from), b = flat(to);
+    lines += fmt::format("{:.7g} {:.7g}\n{:.7g} {:.7g}\n\n", a.x, a.y, b.x, b.y);
+  };
+  for (const worlds::JointShape& joint : joints_) {
+    const Point first = placed(bodies, joint.first, joint.on_first),
+                second = placed(bodies, joint.second, joint.on_second);
+    const Point gap = {first[0] - second[0], first[1] - second[1], first[2] - second[2]};
+    if (std::sqrt(dot(gap, gap)) > joint.apart + 0.05 * shapes_[joint.first].radius) continue;  // it is broken
+    if (joint.kind == "distance" || joint.kind == "rope") {
+      line(first, second);
+    } else if (joint.kind == "slider") {
+      const Point along = joint.second == model::no_body ? joint.axis : turned_by(bodies, joint.second, joint.axis);
+      const double reach = shapes_[joint.first].radius;
+      Point from = first, to = first;
+      for (std::size_t k = 0; k < 3; ++k) from[k] -= 1.5 * reach * along[k], to[k] += 1.5 * reach * along[k];
+      line(from, to);
+    } else if (joint.kind != "gear") {
+      const Flat at = flat(first);
+      pins += fmt::format("{:.7g} {:.7g}\n", at.x, at.y);
     }
   }
-  parts.curve(as_circles, spheres);
+  if (!lines.empty()) parts.curve(fmt::format("with lines lw 1.5 lc rgb '{}'", joint_color), lines);
+  if (!pins.empty()) parts.curve(fmt::format("with points pt 7 ps 0.9 lc rgb '{}'", joint_color), pins);
+  if (!pins.empty()) parts.curve("with points pt 7 ps 0.4 lc rgb 'white'", pins);
 }
 
 void BodyPictures::draw(const live::Bodies& bodies, PictureParts& parts) const {
   draw_springs(bodies, parts);
-  dimension_ == 2 ? draw_discs(bodies, parts) : draw_spheres(bodies, parts);
+  if (dimension_ == 2) {
+    draw_polygons(bodies, parts);
+    draw_discs(bodies, parts);
+  } else {
+    draw_in_space(bodies, parts);
+  }
+  draw_joints(bodies, parts);
 }
 
 }  // namespace continuo::app

@@ -1,6 +1,8 @@
-// The bodies of a world in a picture: spheres with light on them, discs with a mark that shows how they turn, walls and
-// springs.
+// The bodies of a world in a picture: spheres and polyhedra with light on them, discs with a mark that shows how they
+// turn, polygons, walls, springs and joints.
 #pragma once
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include <apps/continuo/pictures/picture_parts.hpp>
@@ -24,9 +26,16 @@ class BodyPictures {
   worlds::Point place(const live::Bodies& bodies, std::size_t i) const;
   Flat flat(const worlds::Point& p) const;
   double radius_of(std::size_t i) const;
+  worlds::Point turned_by(const live::Bodies& bodies, std::size_t i, const worlds::Point& v) const;
+  worlds::Point placed(const live::Bodies& bodies, std::size_t body, const worlds::Point& local) const;
+  std::uint32_t color_of(std::size_t i) const;
   void draw_springs(const live::Bodies& bodies, PictureParts& parts) const;
+  void draw_joints(const live::Bodies& bodies, PictureParts& parts) const;
+  void draw_polygons(const live::Bodies& bodies, PictureParts& parts) const;
+  std::string polyhedron(const live::Bodies& bodies, std::size_t i) const;
+  std::string sphere(const live::Bodies& bodies, std::size_t i) const;
   void draw_discs(const live::Bodies& bodies, PictureParts& parts) const;
-  void draw_spheres(const live::Bodies& bodies, PictureParts& parts) const;
+  void draw_in_space(const live::Bodies& bodies, PictureParts& parts) const;
   std::vector<Flat> wall_in_plane(const worlds::WallShape& wall, const PictureFrame& frame) const;
   std::vector<Flat> wall_in_space(const worlds::WallShape& wall) const;
 
@@ -34,6 +43,8 @@ class BodyPictures {
   std::vector<worlds::BodyShape> shapes_;
   std::vector<worlds::WallShape> walls_;
   std::vector<worlds::SpringShape> springs_;
+  std::vector<worlds::BodyForm> forms_;
+  std::vector<worlds::JointShape> joints_;
   worlds::Point lower_, upper_;  // that bodies reach
 };
 

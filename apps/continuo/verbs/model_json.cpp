@@ -36,6 +36,7 @@ class ModelWriter {
             {"events", list(model_.event_order, &ModelWriter::event)},
             {"checks", list(model_.checks, &ModelWriter::check)},
             {"bodies", model_.has_world() ? list(model_.world->bodies, &ModelWriter::body) : Json::array()},
+            {"joints", model_.has_world() ? list(model_.world->joints, &ModelWriter::joint) : Json::array()},
             {"run", run()}};
   }
 
@@ -104,7 +105,29 @@ class ModelWriter {
     return {{"name", body.name},
             {"fixed", body.fixed},
             {"mass", body.fixed ? Json() : number(body.mass)},
-            {"radius", number(body.radius)}};
+            {"radius", number(body.radius)},
+            {"shape", name_of(body.shape.kind)},
+            {"driven", body.driven}};
+  }
+  static const char* name_of(model::ShapeDescription::Kind kind) {
+    switch (kind) {
+      case model::ShapeDescription::Kind::capsule:
+        return "capsule";
+      case model::ShapeDescription::Kind::box:
+        return "box";
+      case model::ShapeDescription::Kind::hull:
+        return "hull";
+      case model::ShapeDescription::Kind::ball:
+        break;
+    }
+    return "ball";
+  }
+  Json joint(const model::JointDescription& joint) const {
+    const std::vector<model::BodyDescription>& bodies = model_.world->bodies;
+    return {{"name", joint.is_named ? Json(joint.name) : Json()},
+            {"kind", joint.kind},
+            {"first", bodies[joint.first].name},
+            {"second", joint.second == model::no_body ? Json() : Json(bodies[joint.second].name)}};
   }
   Json run() const {
     const model::RunSettings& run = model_.run;

@@ -143,7 +143,11 @@ class WorldTrack final : public Track {
   }
   void let_go(std::size_t body, const Point& velocity) override {
     held_.reset();
-    run_->set_body(body, run_->position(body), velocity);
+    if (run_->is_rigid()) {
+      run_->pull(std::nullopt);  // it has the velocity that the hand gave it
+    } else {
+      run_->set_body(body, run_->position(body), velocity);
+    }
     before_ = run_->state();
   }
 
@@ -186,6 +190,10 @@ class WorldTrack final : public Track {
   }
 
   void put_held() {
+    if (run_->is_rigid()) {
+      run_->pull(held_ ? std::optional(std::pair(held_->body, held_->to)) : std::nullopt);
+      return;
+    }
     if (!held_) return;
     const Point from = run_->position(held_->body);
     const double part = free_part(*run_, held_->body, held_->to);

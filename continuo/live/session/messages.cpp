@@ -136,13 +136,33 @@ json bodies_of(const worlds::WorldRun* world) {
                        {"b", to_body ? json(spring.b) : json(nullptr)},
                        {"point", to_body ? json(nullptr) : point_of(spring.point, world->dimension())}});
   }
+  json forms = json::array(), form = json::array(), joints = json::array();
+  for (const worlds::BodyForm& one : world->forms()) {
+    json corners = json::array();
+    for (const worlds::Point& corner : one.corners) corners.push_back(point_of(corner, world->dimension()));
+    forms.push_back({{"corners", corners}, {"faces", one.faces}});
+  }
+  for (const worlds::BodyShape& body : world->bodies())
+    if (!forms.empty()) form.push_back(body.form == worlds::no_form ? json(nullptr) : json(body.form));
+  for (const worlds::JointShape& joint : world->joints())
+    joints.push_back({{"name", joint.name},
+                      {"kind", joint.kind},
+                      {"first", joint.first},
+                      {"second", joint.second == model::no_body ? json(nullptr) : json(joint.second)},
+                      {"on_first", point_of(joint.on_first, world->dimension())},
+                      {"on_second", point_of(joint.on_second, world->dimension())},
+                      {"axis", point_of(joint.axis, world->dimension())},
+                      {"apart", number(joint.apart)}});
   return {{"count", world->bodies().size()},
           {"dimension", world->dimension()},
           {"radius", radius},
           {"names", names},
           {"walls", walls},
           {"containers", json::array()},
-          {"springs", springs}};
+          {"springs", springs},
+          {"forms", forms},
+          {"form", form},
+          {"joints", joints}};
 }
 
 json methods_of(const model::Model& model) {

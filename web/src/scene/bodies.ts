@@ -1,10 +1,12 @@
-// The spheres of a world, its walls and its containers.
+// The bodies of a world, its joints, walls and containers.
 import * as three from "three";
 import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Bodies } from "../protocol";
 import { spring, springPoints, type Point } from "./curves";
 import { gridStep, include, type Bounds } from "./fit";
+import { JointMarks } from "./joints";
 import { Polyline } from "./polyline";
+import { Solids } from "./solids";
 import { Spheres } from "./spheres";
 
 export const radiusOf = (bodies: Bodies) => (index: number): number => (typeof bodies.radius === "number" ? bodies.radius : (bodies.radius[index] ?? bodies.radius[0] ?? 1));
@@ -46,6 +48,8 @@ const coilPoints = new Float32Array(3 * springPoints(coilTurns));
 export class BodiesView {
   readonly group = new three.Group();
   readonly spheres: Spheres;
+  readonly joints: JointMarks;
+  private readonly solids: Solids;
   private readonly lines: Polyline[] = [];
   private readonly springs: ShownSpring[];
   private readonly surfaces: { geometry: three.BufferGeometry; material: three.Material }[] = [];
@@ -60,11 +64,15 @@ export class BodiesView {
     this.spheres = new Spheres(bodies.count, { flat, opacity: ghost ? 0.4 : 1, least: leastRadius(bodies.count), order: ghost ? -5 : 4.5 });
     const radius = radiusOf(bodies);
     for (let i = 0; i < bodies.count; ++i) {
-      this.spheres.place(i, 0, 0, 0, radius(i));
+      this.spheres.place(i, 0, 0, 0, (bodies.form?.[i] ?? null) === null ? radius(i) : 0);
       this.spheres.tint(i, channels(this.colorOf(i, theme)));
     }
     this.spheres.placed();
     this.group.add(this.spheres.object);
+    this.solids = new Solids(bodies, (index) => channels(this.colorOf(index, theme)), { flat, ghost });
+    this.group.add(this.solids.group);
+    this.joints = new JointMarks(bodies, radius, theme === "light" ? "#303030" : "#e8eef4");
+    if (!ghost) this.group.add(this.joints.group);
     const line = theme === "light" ? "#5c6b7a" : "#9aa8b5";
     for (const { lower, upper } of ghost ? [] : bodies.containers) this.outline(lower, upper, line, flat);
     const box = boxOfWalls(bodies.walls, bodies.dimension);
@@ -81,6 +89,8 @@ export class BodiesView {
   update(positions: Float32Array, orientations: Float32Array | null): void {
     this.spheres.placeAll(positions, this.bodies.dimension);
     this.spheres.turnAll(orientations, this.bodies.dimension);
+    this.solids.update(this.spheres.places, orientations);
+    this.joints.update(this.spheres.places, orientations);
     for (const each of this.springs) this.stretch(each);
   }
 
@@ -108,6 +118,8 @@ export class BodiesView {
 
   dispose(): void {
     this.spheres.dispose();
+    this.solids.dispose();
+    this.joints.dispose();
     for (const line of this.lines) line.dispose();
     for (const { geometry, material } of this.surfaces) {
       geometry.dispose();

@@ -18,6 +18,10 @@ const vertex = /* glsl */ `
     flat out mat3 own;       // takes a normal of the picture into the sphere's own axes
   #endif
   void main() {
+    if (radius == 0.0) {  // no sphere, but a body of another shape
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      return;
+    }
     vec4 centre = modelViewMatrix * vec4(position, 1.0);
     float scale = projectionMatrix[2][3] == 0.0 ? pixel : -centre.z * pixel;
     float size = max(radius, least * scale);

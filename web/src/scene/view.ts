@@ -27,6 +27,7 @@ export class SceneView {
   readonly stage: Stage;
   readonly hand: Hand;
   gridShown = true;
+  private jointsShown = true;
   private readonly grid = make("canvas", { class: "grid", "aria-hidden": "true" });
   private readonly labels = new Labels();
   private readonly vectors = new Vectors();
@@ -194,6 +195,14 @@ export class SceneView {
     return this.vectors.shown;
   }
 
+  /** The marks of joints, or none. */
+  toggleJoints(): boolean {
+    this.jointsShown = !this.jointsShown;
+    if (this.bodies) this.bodies.joints.group.visible = this.jointsShown;
+    this.stage.invalidate();
+    return this.jointsShown;
+  }
+
   /** The view of the bodies, made anew where there is none of as many. */
   private showBodies(old: BodiesView | null, bodies: Bodies, positions: Float32Array, orientations: Float32Array | null, ghost: boolean): BodiesView {
     const count = positions.length / bodies.dimension;
@@ -208,6 +217,7 @@ export class SceneView {
       // Where the drawing connects things itself the world's springs are not shown once more.
       const connected = this.session.model?.drawing.some((item) => item.numbers["to"] !== undefined && item.shape !== "arrow") ?? false;
       view = new BodiesView({ ...bodies, count, springs: connected ? [] : (bodies.springs ?? []) }, this.theme, ghost, size);
+      view.joints.group.visible = this.jointsShown;
       this.stage.scene.add(view.group);
     }
     view.update(positions, orientations);

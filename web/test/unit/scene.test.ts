@@ -2,10 +2,12 @@ import { expect, test } from "vitest";
 import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/curves";
 import { boundsOfItems, distanceFor, gridStep, heightFor, Interest, type Bounds } from "../../src/scene/fit";
 import { boxOfWalls } from "../../src/scene/bodies";
+import { endsOf, isBroken, linesOf } from "../../src/scene/joints";
+import { edgesOf, normalOf, placed, rotationOf } from "../../src/scene/solids";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
 import { curveColors } from "../../src/palette";
-import type { Item } from "../../src/protocol";
+import type { Bodies, Form, Item, Joint } from "../../src/protocol";
 
 const item = (shape: Item["shape"], numbers: Item["numbers"]): Item => ({ shape, numbers, drag: false });
 
@@ -119,4 +121,41 @@ test("six walls along the axes are a box, others are not", () => {
   expect(boxOfWalls(walls, 3)).toEqual({ lower: [-2, -2, -2], upper: [2, 2, 2] });
   expect(boxOfWalls(walls.slice(1), 3)).toBeNull();
   expect(boxOfWalls([...walls, { normal: [1, 1, 0], offset: 0 }], 3)).toBeNull();
+});
+
+const cube: Form = {
+  corners: [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+  faces: [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
+};
+
+test("a cube has twelve edges, and normals that point outwards", () => {
+  expect(edgesOf(cube, false)).toHaveLength(12);
+  for (const face of cube.faces) {
+    const normal = normalOf(cube, face);
+    const corner = cube.corners[face[0]!]!;
+    expect(normal[0] * corner[0]! + normal[1] * corner[1]! + normal[2] * corner[2]!).toBeCloseTo(1, 12);
+  }
+});
+
+test("a body is placed by its angle in the plane, by its quaternion in space", () => {
+  const right = placed(rotationOf(Float32Array.of(0, Math.PI / 2), 1, true), [0, 0, 0, 5, 6, 0], 3, [1, 0]);
+  expect(right[0]).toBeCloseTo(5, 6);
+  expect(right[1]).toBeCloseTo(7, 6);
+  const half = Math.SQRT1_2; // a right angle about x takes y to z
+  const up = placed(rotationOf(Float32Array.of(half, 0, 0, half), 0, false), [0, 0, 0], 0, [0, 1, 0]);
+  expect(up[2]).toBeCloseTo(1, 6);
+});
+
+test("joints hold their bodies where they are, and guides lie along their axes", () => {
+  const joint: Joint = { name: "", kind: "slider", first: 0, second: null, on_first: [1, 0], on_second: [4, 2], axis: [0, 1], apart: null };
+  const bodies: Bodies = { count: 1, dimension: 2, radius: 2, walls: [], containers: [], joints: [joint] };
+  const ends = endsOf(joint, bodies, [3, 2, 0], Float32Array.of(0));
+  expect(ends.first).toEqual([4, 2, 0]);
+  expect(ends.second).toEqual([4, 2, 0]);
+  expect(linesOf(joint, ends, 2)).toEqual([[4, -1, 0], [4, 5, 0]]);
+  expect(linesOf({ ...joint, kind: "rope" }, ends, 2)).toEqual([[4, 2, 0], [4, 2, 0]]);
+  expect(linesOf({ ...joint, kind: "hinge" }, ends, 2)).toEqual([]);
+  expect(isBroken(joint, { ...ends, second: [9, 9, 0] }, 2)).toBe(false);
+  expect(isBroken({ ...joint, kind: "rope", apart: 3 }, { ...ends, second: [7, 2, 0] }, 2)).toBe(false);
+  expect(isBroken({ ...joint, kind: "rope", apart: 3 }, { ...ends, second: [8, 2, 0] }, 2)).toBe(true);
 });
