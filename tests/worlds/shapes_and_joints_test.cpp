@@ -145,6 +145,59 @@ check low.z at end = 1 within 1e-3
   EXPECT_EQ(failed_checks(run), "");
 }
 
+// Gears keep the first angle plus twice the second one; a spring draws the distance to half a length beyond its start.
+TEST(ShapesAndJoints, GearsTurnAndSpringsRest) {
+  const model::Run run = run_of(R"(
+world {
+  mode fast step 1/240
+  body small at (0, 0) radius 1 mass 1
+  body large at (3, 0) radius 2 mass 1
+  hinge small at (0, 0) motor 1 torque at most 100
+  hinge large at (3, 0)
+  gear small to large ratio 2
+  body bob at (20, 1) radius 0.1 mass 2
+  distance elastic: bob to (20, 5) spring 1 rest 0.5
+}
+output both = small.angle + 2*large.angle
+run 0..3
+check always abs(both) < 1e-6
+check small.spin at end = 1 within 1e-6
+check elastic.length at end = 4.5 within 1e-4      # critically damped at 1 per unit of time: e^(-6 pi)*6 pi is left
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
+// A universal joint between shafts in line turns both alike. A wheel turns about its axle and keeps to its car.
+TEST(ShapesAndJoints, ShaftsAndWheelsTurnInSpace) {
+  const model::Run run = run_of(R"(
+world {
+  dimension 3
+  gravity (0, 0, -10)
+  mode fast step 1/240
+  body frame at (0, 0, 0) box (1, 1, 1) fixed
+  body lower at (0, 0, 2) box (0.2, 0.2, 2) mass 1
+  body upper at (0, 0, 4) box (0.2, 0.2, 2) mass 1
+  hinge shaft: lower to frame at (0, 0, 1) axis (0, 0, 1) motor 2 torque at most 100
+  universal upper to lower at (0, 0, 3) axis (1, 0, 0) axle (0, 1, 0)
+  hinge upper at (0, 0, 5) axis (0, 0, 1)
+  body arm at (6, 0, 0) capsule 1 radius 0.1 axis (0, 1, 0) angle 90 [deg] mass 3
+  ball arm at (5.5, 0, 0)
+  body car at (20, 0, 2) box (2, 1, 0.5) mass 10
+  body rim at (20, 1, 1) radius 0.5 mass 1
+  wheel rim to car at (20, 1, 1) axis (0, 0, 1) axle (0, 1, 0) spring 3 motor 4 torque at most 50
+  weld car at (20, 0, 2)
+}
+output reach = hypot(hypot(arm.x - 5.5, arm.y), arm.z)
+run 0..1
+check shaft.angle at end = 2 within 0.01           # a step of its start
+check upper.spin_z at end = 2 within 1e-3
+check rim.spin_y at end = 4 within 1e-3
+check rim.x at end = 20 within 1e-4
+check always abs(reach - 0.5) < 1e-4
+)");
+  EXPECT_EQ(failed_checks(run), "");
+}
+
 // A driven belt carries a crate with it, and stays what moves it: fixed.
 TEST(ShapesAndJoints, DrivenBodiesCarryOthers) {
   const model::Run run = run_of(R"(
