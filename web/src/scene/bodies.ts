@@ -7,7 +7,7 @@ import { gridStep, include, type Bounds } from "./fit";
 import { JointMarks } from "./joints";
 import { Polyline } from "./polyline";
 import { Solids } from "./solids";
-import { Spheres } from "./spheres";
+import { pickSphere, Spheres } from "./spheres";
 
 export const radiusOf = (bodies: Bodies) => (index: number): number => (typeof bodies.radius === "number" ? bodies.radius : (bodies.radius[index] ?? bodies.radius[0] ?? 1));
 
@@ -50,6 +50,7 @@ export class BodiesView {
   readonly spheres: Spheres;
   readonly joints: JointMarks;
   private readonly solids: Solids;
+  private orientations: Float32Array | null = null;
   private readonly lines: Polyline[] = [];
   private readonly springs: ShownSpring[];
   private readonly surfaces: { geometry: three.BufferGeometry; material: three.Material }[] = [];
@@ -89,9 +90,22 @@ export class BodiesView {
   update(positions: Float32Array, orientations: Float32Array | null): void {
     this.spheres.placeAll(positions, this.bodies.dimension);
     this.spheres.turnAll(orientations, this.bodies.dimension);
+    this.orientations = orientations;
     this.solids.update(this.spheres.places, orientations);
     this.joints.update(this.spheres.places, orientations);
     for (const each of this.springs) this.stretch(each);
+  }
+
+  /** The body under a ray; one that it misses by no more than `least` at its distance, where it meets none. */
+  pick(origin: readonly number[], direction: readonly number[], least: (distance: number) => number): number {
+    const { places } = this.spheres;
+    const radius = radiusOf(this.bodies);
+    const ballRadius = (index: number): number => ((this.bodies.form?.[index] ?? null) === null ? radius(index) : 0);
+    const solid = this.solids.pick(places, this.orientations, origin, direction);
+    const ball = pickSphere(places, ballRadius, origin, direction, solid ? () => 0 : least);
+    if (!solid || ball < 0) return solid?.index ?? ball;
+    const along = [0, 1, 2].reduce((sum, k) => sum + (places[3 * ball + k]! - origin[k]!) * direction[k]!, 0);
+    return this.bodies.dimension === 2 || along < solid.along ? ball : solid.index;
   }
 
   private stretch(shown: ShownSpring): void {

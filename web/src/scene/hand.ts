@@ -14,8 +14,8 @@ export interface Thing {
 export interface Surroundings {
   session: Session;
   stage: Stage;
-  /** The positions of all bodies, three numbers each. */
-  bodies(): { places: ArrayLike<number>; radius: (index: number) => number } | null;
+  /** The positions of all bodies, three numbers each, and the one under a ray, or -1. */
+  bodies(): { places: ArrayLike<number>; pick: (origin: readonly number[], direction: readonly number[], least: (distance: number) => number) => number } | null;
   select(thing: Thing | null): void;
 }
 
@@ -123,7 +123,7 @@ export class Hand {
     const direction = ray.direction.toArray();
     const item = pickSphere(places, sizeOf, origin, direction, least);
     const bodies = this.around.bodies();
-    const body = bodies ? pickSphere(bodies.places, bodies.radius, origin, direction, (distance) => least(distance) / 3) : -1;
+    const body = bodies ? bodies.pick(origin, direction, (distance) => least(distance) / 3) : -1;
     // Where the drawing shows a body once more, the body is what is meant.
     if (item >= 0 && (body < 0 || model.drawing[candidates[item]!]!.drag)) {
       const index = candidates[item]!;

@@ -60,6 +60,28 @@ export function edgesOf(form: Form, flat: boolean): [number, number][] {
   return edges;
 }
 
+/** How far along a ray a convex form is entered, in its own frame; null where it is missed. In the plane the ray is a point. */
+export function entry(form: Form, origin: Triple, direction: Triple, flat: boolean): number | null {
+  if (flat) {
+    const isIn = (face: readonly number[]): boolean => face.every((corner, k) => {
+      const a = form.corners[corner]!;
+      return cross(minus(form.corners[face[(k + 1) % face.length]!]!, a), minus([origin[0], origin[1]], a))[2] >= 0;
+    });
+    return form.faces.some(isIn) ? 0 : null;
+  }
+  let enter = 0;
+  let leave = Infinity;
+  for (const face of form.faces) {
+    const normal = normalOf(form, face);
+    const height = dot(normal, minus(origin, form.corners[face[0]!]!));
+    const rate = dot(normal, direction);
+    if (rate < 0) enter = Math.max(enter, -height / rate);
+    else if (rate > 0) leave = Math.min(leave, -height / rate);
+    else if (height > 0) return null;
+  }
+  return enter <= leave ? enter : null;
+}
+
 const light: Triple = [-0.35, -0.45, 0.82];
 
 export class Solids {
@@ -132,6 +154,23 @@ export class Solids {
       line.setXYZ(i, ...placed(turn, places, 3 * body, end.at));
     });
     position.needsUpdate = color.needsUpdate = line.needsUpdate = true;
+  }
+
+  /** The body that a ray meets first, of those of the plane the one on top, and how far it is; null where it meets none. */
+  pick(places: ArrayLike<number>, orientations: Float32Array | null, origin: readonly number[], direction: readonly number[]): { index: number; along: number } | null {
+    const flat = this.bodies.dimension === 2;
+    let best: { index: number; along: number } | null = null;
+    this.bodies.form?.forEach((number, index) => {
+      const form = number === null ? undefined : this.bodies.forms?.[number];
+      if (!form) return;
+      const turn = rotationOf(orientations, index, flat);
+      const back = [turn[0]!, turn[3]!, turn[6]!, turn[1]!, turn[4]!, turn[7]!, turn[2]!, turn[5]!, turn[8]!];
+      const from = [0, 1, 2].map((k) => origin[k]! - places[3 * index + k]!);
+      if (flat) from[2] = 0;
+      const along = entry(form, placed(back, [0, 0, 0], 0, from), placed(back, [0, 0, 0], 0, direction), flat);
+      if (along !== null && (!best || along <= best.along)) best = { index, along };
+    });
+    return best;
   }
 
   dispose(): void {

@@ -62,7 +62,10 @@ export class SceneView {
     this.hand = new Hand({
       session,
       stage: this.stage,
-      bodies: () => (this.bodies ? { places: this.bodies.spheres.places, radius: radiusOf(this.bodies.bodies) } : null),
+      bodies: () => {
+        const { bodies } = this;
+        return bodies && { places: bodies.spheres.places, pick: (origin, direction, least) => bodies.pick(origin, direction, least) };
+      },
       select: (thing) => this.select(thing),
     });
     surface.element.addEventListener("dblclick", () => this.fit());

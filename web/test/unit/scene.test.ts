@@ -3,7 +3,7 @@ import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/c
 import { boundsOfItems, distanceFor, gridStep, heightFor, Interest, type Bounds } from "../../src/scene/fit";
 import { boxOfWalls } from "../../src/scene/bodies";
 import { endsOf, isBroken, linesOf } from "../../src/scene/joints";
-import { edgesOf, normalOf, placed, rotationOf } from "../../src/scene/solids";
+import { edgesOf, entry, normalOf, placed, rotationOf } from "../../src/scene/solids";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
 import { curveColors } from "../../src/palette";
@@ -158,4 +158,13 @@ test("joints hold their bodies where they are, and guides lie along their axes",
   expect(isBroken(joint, { ...ends, second: [9, 9, 0] }, 2)).toBe(false);
   expect(isBroken({ ...joint, kind: "rope", apart: 3 }, { ...ends, second: [7, 2, 0] }, 2)).toBe(false);
   expect(isBroken({ ...joint, kind: "rope", apart: 3 }, { ...ends, second: [8, 2, 0] }, 2)).toBe(true);
+});
+
+test("a ray enters a cube at its surface, and a point of the plane is in a polygon or not", () => {
+  expect(entry(cube, [-5, 0.5, 0.5], [1, 0, 0], false)).toBeCloseTo(4, 12);
+  expect(entry(cube, [-5, 1.5, 0.5], [1, 0, 0], false)).toBeNull();
+  expect(entry(cube, [0, 0, 0], [0, 0, 1], false)).toBe(0);
+  const triangle: Form = { corners: [[0, 0], [1, 0], [0, 1]], faces: [[0, 1, 2]] };
+  expect(entry(triangle, [0.2, 0.2, 0], [0, 0, -1], true)).toBe(0);
+  expect(entry(triangle, [0.6, 0.6, 0], [0, 0, -1], true)).toBeNull();
 });
