@@ -43,11 +43,12 @@ using Point = std::array<double, 3>;
 }
 
 /// The surface of bodies that are not balls, in the frame of a body: polygons of the plane, or the faces of a
-/// polyhedron, counter-clockwise seen from outside. What is round has many corners.
+/// polyhedron. What is round has many corners.
 struct BodyForm {
-  std::vector<Point> corners;
-  std::vector<std::vector<std::uint32_t>> faces;
+  std::vector<Point> corners;                     // each once
+  std::vector<std::vector<std::uint32_t>> faces;  // by their corners, counter-clockwise seen from outside
 };
+/// The form of a ball, which has none.
 inline constexpr std::size_t no_form = static_cast<std::size_t>(-1);
 /// The constant data of a body.
 struct BodyShape {
@@ -71,11 +72,14 @@ struct SpringShape {
 
 /// A joint and where it holds its bodies, in their frames; of the world, in the world.
 struct JointShape {
-  std::string name, kind;
-  std::size_t first, second;  // bodies; second is model::no_body where it is the world
-  Point on_first, on_second;
-  Point axis;    // of sliders and wheels, in the frame of the second; else 0
-  double apart;  // the greatest distance of the two places, beyond which it is broken; infinite where it has none
+  std::string name;    // empty where it has none
+  std::string kind;    // "hinge"
+  std::size_t first;   // a body
+  std::size_t second;  // a body, or model::no_body: the world
+  Point on_first;      // where it holds the first
+  Point on_second;     // where it holds the second
+  Point axis;          // of sliders and wheels, in the frame of the second; else 0
+  double apart;        // the greatest distance of the two places, beyond which it is broken; infinite where it has none
 };
 
 /// An impact, or the beginning or end of a lasting contact.
