@@ -71,7 +71,6 @@ class RigidContacts {
       if constexpr (Archive::reads)
         if (!archive.ok()) return;
     }
-    if constexpr (Archive::reads) std::ranges::stable_sort(contacts_, {}, &PartContact<Real, Dim>::parts);
   }
   [[nodiscard]] std::size_t memory() const { return contacts_.capacity() * sizeof(PartContact<Real, Dim>); }
 

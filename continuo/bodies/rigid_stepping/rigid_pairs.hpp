@@ -123,7 +123,9 @@ class RigidPairs {
         add_walls(world, i);
       }
       std::sort(pairs_.begin() + kept, pairs_.end());
-      std::inplace_merge(pairs_.begin(), pairs_.begin() + kept, pairs_.end());
+      merged_.resize(pairs_.size());
+      std::merge(pairs_.begin(), pairs_.begin() + kept, pairs_.begin() + kept, pairs_.end(), merged_.begin());
+      pairs_.swap(merged_);
     }
     return true;
   }
@@ -194,7 +196,7 @@ class RigidPairs {
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<std::uint32_t> moved_;
   std::vector<std::uint8_t> has_moved_;  // each part
-  std::vector<PartPair> pairs_;
+  std::vector<PartPair> pairs_, merged_;
   BoundsTree<Real, Dim> tree_;
   bool is_new_ = true;
 };
