@@ -48,7 +48,7 @@ int order_of_fixed_steps(const model::Model& model, std::string_view method) {
 }
 
 std::string_view reference_method(const model::Model& model, bool stiff) {
-  if (kind_of(model).solver == Solver::world) return "exact";
+  if (kind_of(model).solver == Solver::world) return model.world->needs_fast_motion() ? "fast" : "exact";
   if (!stiff && !model.needs_dae_solver()) return "verner9";
   return find_method("radau") != nullptr ? "radau" : "bdf";
 }

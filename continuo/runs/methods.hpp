@@ -30,8 +30,8 @@ struct Method {
 /// The order that the method keeps in steps of a fixed size; 0 where there is none.
 [[nodiscard]] int order_of_fixed_steps(const model::Model& model, std::string_view method);
 
-/// What others are compared with: the exact motion of bodies, a pair of high order, or where equations are stiff or
-/// algebraic, a method for such.
+/// What others are compared with: the exact motion of bodies, or the fast one where only that moves them; a pair of
+/// high order, or where equations are stiff or algebraic, a method for such.
 [[nodiscard]] std::string_view reference_method(const model::Model& model, bool stiff);
 
 }  // namespace continuo::runs

@@ -40,7 +40,8 @@ struct Comparison {
 };
 
 /// The relative tolerance of the reference, close to round-off. Its method is Verner's 9(8) pair, or a stiff one where
-/// the model has algebraic equations or an implicit method is compared: a pair could take hours there.
+/// the model has algebraic equations or an implicit method is compared: a pair could take hours there. Bodies that only
+/// the fast motion moves are compared with it in steps of a sixteenth.
 inline constexpr double reference_rtol = 1e-13;
 
 /// Without a good reference run there are no contenders; its diagnostics say why.

@@ -123,7 +123,8 @@ struct Convergence {
 [[nodiscard]] Result<Convergence> converge(const ConvergenceProblem& problem, const ConvergeRequest& request);
 
 /// The same for any model. With events, modes, tables or algebraic equations: global and energy errors only, in rows at
-/// output times, against a strict run in double; of a world of bodies against its exact motion.
+/// output times, against a strict run in double; of a world of bodies against its exact motion, or where
+/// only the fast one moves it, against that in steps of a sixteenth.
 [[nodiscard]] Result<Convergence> converge(const std::shared_ptr<const model::ModelProgram>& program,
                                            const model::Experiment& experiment, const ConvergeRequest& request);
 

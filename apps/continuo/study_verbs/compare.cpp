@@ -63,10 +63,11 @@ std::string table_of(const model::Model& model, const Comparison& comparison) {
   std::string text = fmt::format("{:<20} {:<14} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "method", "", "final error",
                                  "largest", "energy drift", kind.cost, "time");
   for (const Contender& contender : comparison.contenders) text += line_of(model, contender);
+  const model::Plan& reference = comparison.reference.run->plan;
   if (kind.solver == runs::Solver::world)
-    return text +
-           fmt::format("errors against exact at tol {}: of places by the farthest, of velocities by the fastest\n",
-                       studies::reference_rtol);
+    return text + fmt::format("errors against {}: of places by the farthest, of velocities by the fastest\n",
+                              reference.step > 0 ? fmt::format("{} with h = {:.4g}", reference.method, reference.step)
+                                                 : fmt::format("exact at tol {}", studies::reference_rtol));
   return text + fmt::format("errors against {} at tol {}, relative to each state's largest value\n",
                             comparison.reference.run->plan.method, studies::reference_rtol);
 }

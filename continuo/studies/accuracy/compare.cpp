@@ -32,7 +32,8 @@ model::Experiment with_common_rows(const model::ModelProgram& program, const Com
       const auto fast = runs::plan(program.model, experiment, problems);
       if (fast) steps.push_back(fast->step);
     }
-    experiment.method = "exact";
+    experiment.method = runs::reference_method(program.model, false);
+    if (experiment.method == "fast" && !steps.empty()) experiment.step = steps.front();
     const auto plan = runs::plan(program.model, experiment, problems);
     if (!plan || steps.empty()) return experiment;
     const double longest = std::ranges::max(steps), wanted = (plan->to - plan->from) / grid_intervals;
@@ -52,6 +53,15 @@ std::string_view reference_method(const model::ModelProgram& program, const Comp
     return info != nullptr && info->implicit;
   };
   return runs::reference_method(program.model, std::ranges::any_of(request.methods, is_implicit));
+}
+
+/// A sixteenth of the smallest step, for bodies that only a motion in steps moves; nothing where no step is known.
+std::optional<double> step_of_reference(const model::ModelProgram& program, const CompareRequest& request,
+                                        const model::Experiment& common) {
+  if (!request.steps.empty()) return std::ranges::min(request.steps) / 16;
+  std::vector<model::Diagnostic> problems;
+  const auto plan = runs::plan(program.model, common, problems);
+  return plan && plan->step > 0 ? std::optional(plan->step / 16) : std::nullopt;
 }
 
 /// Absolute tolerances as small against each state as the relative one; a model's own are kept where tighter.
@@ -150,17 +160,17 @@ std::string Contender::label() const {
 Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
   const model::Experiment common = with_common_rows(*program, request);
   const runs::Kind kind = runs::kind_of(program->model);
-  Comparison comparison{
-      .reference =
-          runs::run(program, for_reference(kind, common, reference_method(*program, request)), {.from_start = true}),
-      .contenders = {}};
+  const std::string_view method = reference_method(*program, request);
+  model::Experiment strict = for_reference(kind, common, method);
+  if (method == "fast") strict.step = step_of_reference(*program, request, common);
+  Comparison comparison{.reference = runs::run(program, strict, {.from_start = true}), .contenders = {}};
   if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) return comparison;
 
   const model::Motion& motion = comparison.reference.run->motion;
-  for (const std::string& method : request.methods) {
+  for (const std::string& name : request.methods) {
     model::Experiment experiment = common;
-    experiment.method = method;
-    const bool stepless = runs::has_no_step(kind, method);
+    experiment.method = name;
+    const bool stepless = runs::has_no_step(kind, name);
     if (stepless || (request.steps.empty() && request.tolerances.empty())) {
       comparison.contenders.push_back(contend(program, motion, experiment));
     }

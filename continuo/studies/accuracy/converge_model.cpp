@@ -1,10 +1,12 @@
 // Poses the study of convergence for a model: its equations, or whole runs of it.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <continuo/language/world.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/methods.hpp>
 #include <continuo/runs/run.hpp>
@@ -80,12 +82,15 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
   return result;
 }
 
+std::string name_of_reference(const model::Model& model) {
+  if (runs::kind_of(model).solver != runs::Solver::world) return "a strict run";
+  return model.world->needs_fast_motion() ? "the fast motion in steps of a sixteenth" : "the exact motion";
+}
+
 Result<Convergence> compare_runs(const std::shared_ptr<const model::ModelProgram>& program,
                                  model::Experiment experiment, Interval<double> interval,
                                  const ConvergeRequest& request) {
-  Convergence result{
-      .by_tolerance = !request.tolerances.empty(),
-      .reference = runs::kind_of(program->model).solver == runs::Solver::world ? "the exact motion" : "a strict run"};
+  Convergence result{.by_tolerance = !request.tolerances.empty(), .reference = name_of_reference(program->model)};
   experiment.interrupt = request.interrupt;
   CompareRequest compared{.methods = {}, .tolerances = request.tolerances, .experiment = std::move(experiment)};
   if (request.tolerances.empty())
