@@ -1,8 +1,8 @@
 // continuo/bodies/exact_motion.hpp
-// Moves spheres under gravity alone, or without forces, from collision to collision. Every path between two collisions
-// is a parabola; collision times come from closed forms or, where two bodies accelerate differently, from an isolated
-// root of a polynomial (collision_time.hpp); energy and momentum are conserved to rounding. There is no step and no
-// tolerance.
+// Moves bodies from collision to collision. Of spheres under gravity alone, or without forces, every path between two
+// collisions is a parabola; collision times come from closed forms or, where two bodies accelerate differently, from an
+// isolated root of a polynomial (collision_time.hpp); energy and momentum are conserved to rounding. There is no step
+// and no tolerance.
 //
 // Each body has its own time and one next event: a collision, or the crossing into another cell of the grid. An event
 // moves only the bodies that take part in it. If the partner of a predicted collision has collided since the
@@ -24,8 +24,12 @@
 // other for less than that have no parabolas: together with the bodies near them they form an island, which moves as
 // under other forces until its bodies have not touched each other for some time. All other bodies stay on their
 // parabolas, see islands.hpp.
+//
+// Bodies of other shapes turn as Euler's equations say, joints are constraints that are kept to rounding, and the gap
+// of two shapes is followed until it closes: see exact_rigid/rigid_motion.hpp. What it does not know it refuses.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -76,12 +80,14 @@ class ExactMotion {
   void load(ByteReader& reader);
 
  private:
-  [[nodiscard]] bool is_parabolic() const;
-  [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> engine() const;
+  enum class Kind : std::uint8_t { constrained, parabolic, rigid };  // snapshots have the number
+  /// What the world needs: the engine for parabolas where the only force is gravity.
+  [[nodiscard]] Kind kind() const;
+  [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> engine(Kind kind) const;
 
   World<Real, Dim>* world_;
   Companions<Real, Dim>* companions_ = nullptr;
-  bool was_parabolic_ = true;  // the only force was gravity
+  Kind kind_ = Kind::parabolic;  // of the engine
   ExactOptions<Real> options_;
   std::unique_ptr<ExactEngine<Real, Dim>> engine_;
 };

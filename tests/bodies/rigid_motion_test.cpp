@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "rigid_worlds.hpp"
-#include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
@@ -338,8 +337,6 @@ TEST(RigidMotion, RefusesWhatMakesNoSense) {
   EXPECT_FALSE(world.add({.traits = {.gravity_scale = nan}}));
   EXPECT_EQ(world.size(), 0u);
   ASSERT_TRUE(world.add({.shape = Box<double, 3>{}}));
-  ExactMotion<double, 3> exact(world);
-  EXPECT_EQ(exact.advance_to(1).ending, Ending::invalid_input);
   world.material[0].rolling_resistance = 0.1;
   FastMotion<double, 3> motion(world);
   EXPECT_EQ(motion.advance().ending, Ending::invalid_input);

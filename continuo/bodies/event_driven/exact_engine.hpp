@@ -1,6 +1,6 @@
 // continuo/bodies/event_driven/exact_engine.hpp
-// The engines of the exact motion: for parabolas, for paths under any forces, and for worlds under gravity of which
-// some parts need the one and some the other.
+// The engines of the exact motion: for balls on parabolas, on paths under any forces, and under gravity where some
+// balls need the one and some the other; and for bodies of any shape with joints.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -118,5 +118,10 @@ template <class Real, int Dim>
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> islands(World<Real, Dim>& world,
                                                               const ExactOptions<Real>& options);
+
+/// The engine for bodies of any shape, and for joints: exact_rigid/rigid_motion.hpp.
+template <class Real, int Dim>
+[[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> rigid_motion(World<Real, Dim>& world,
+                                                                   const ExactOptions<Real>& options);
 
 }  // namespace continuo

@@ -10,12 +10,19 @@
 namespace continuo {
 
 template <class Real, int Dim>
-bool ExactMotion<Real, Dim>::is_parabolic() const {
-  return !companions_ && only_gravity(*world_);
+auto ExactMotion<Real, Dim>::kind() const -> Kind {
+  if (world_->has_solids() || world_->joint_count() > 0) return Kind::rigid;
+  for (std::size_t i = 0; world_->has_traits() && i < world_->size(); ++i) {
+    BodyTraits<Real> traits = world_->traits(i);
+    traits.user_data = 0;
+    if (traits != BodyTraits<Real>{}) return Kind::rigid;
+  }
+  return !companions_ && only_gravity(*world_) ? Kind::parabolic : Kind::constrained;
 }
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine() const {
-  if (!is_parabolic()) return constrained_motion(*world_, options_, companions_);
+std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine(Kind kind) const {
+  if (kind == Kind::rigid) return rigid_motion(*world_, options_);
+  if (kind == Kind::constrained) return constrained_motion(*world_, options_, companions_);
   if (world_->gravity == Vector<Real, Dim>{}) return event_driven(*world_, options_);
   return islands(*world_, options_);
 }
@@ -47,24 +54,18 @@ Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (options_.contact_time && !(*options_.contact_time >= Real(0)))
     return invalid_input("contact_time must be 0 or more");
   if (Status fault = check_bodies(*world_); !fault) return fault;
-  if (world_->has_solids() || world_->joint_count() > 0)
-    return invalid_input("the exact motion moves balls without joints: use FastMotion for other shapes and for joints");
   if (world_->has_meshes()) return invalid_input("the exact motion knows no static meshes: use FastMotion for them");
-  for (std::size_t i = 0; world_->has_traits() && i < world_->size(); ++i) {
-    BodyTraits<Real> traits = world_->traits(i);
-    traits.user_data = 0;
-    if (traits != BodyTraits<Real>{})
-      return invalid_input("the exact motion knows no traits of bodies but user_data: use FastMotion");
-  }
-  if (is_parabolic() != was_parabolic_) refresh();
+  if (kind() == Kind::rigid && companions_)
+    return invalid_input("the exact motion integrates equations beside balls without joints only: use FastMotion");
+  if (kind() != kind_) refresh();
   engine_->contacts.clear();
   return engine_->advance_to(t);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
-  was_parabolic_ = is_parabolic();
-  engine_ = engine();
+  kind_ = kind();
+  engine_ = engine(kind_);
   engine_->statistics = so_far;
 }
 template <class Real, int Dim>
@@ -83,21 +84,21 @@ std::size_t ExactMotion<Real, Dim>::lost_contact_events() const {
 
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::save(ByteWriter& writer) const {
-  writer(engine_->statistics), writer(was_parabolic_);
+  writer(engine_->statistics), writer(kind_);
   engine_->save(writer);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   ExactStatistics statistics;
-  bool parabolic = false;
-  reader(statistics), reader(parabolic);
-  reader.expect(parabolic == is_parabolic(), "parabolas where there are other forces than gravity, or none where not");
+  Kind saved{};
+  reader(statistics), reader(saved);
+  reader.expect(saved == kind(), "a motion for other shapes, joints or forces than those of the world");
   if (!reader.ok()) return;
-  auto next = engine();
+  auto next = engine(saved);
   next->load(reader);
   reader.expect_end();
   if (!reader.ok()) return;
-  was_parabolic_ = parabolic;
+  kind_ = saved;
   engine_ = std::move(next);
   engine_->statistics = statistics;
 }

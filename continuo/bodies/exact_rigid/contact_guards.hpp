@@ -1,0 +1,184 @@
+// The end of a flight with lasting contacts or motors, within a step: a contact force falls to 0, a contact begins to
+// slip or to stick, a corner comes to lie beside one that touches, a contact leaves its feature, or a motor reaches its
+// speed or its greatest force.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/exact_rigid/rigid_flight.hpp>
+#include <continuo/bodies/exact_rigid/separation.hpp>
+#include <continuo/numerics/root_bracketing.hpp>
+
+namespace continuo {
+
+/// Two parts that stay in contact, by the numbers of their bodies in the system.
+template <class Real, int Dim>
+struct WatchedPair {
+  ExactPart<Real, Dim> part_a{}, part_b{};
+  std::uint32_t a = 0, b = 0;
+};
+
+template <class Real, int Dim>
+class ContactGuards {
+ public:
+  using V = Vector<Real, Dim>;
+  using X = std::vector<Real>;
+  using System = RigidSystem<Real, Dim>;
+
+  /// Corners nearer to the face than `near` times the size of their body may stay there: the gap of what is in contact
+  /// stays within `drift` times the size.
+  ContactGuards(const Real& near, const Real& drift, const Real& force, const Real& speed)
+      : near_(near), drift_(drift), force_(force), speed_(speed) {}
+
+  void watch(const WatchedPair<Real, Dim>& pair) { pairs_.push_back(pair); }
+  /// To be called before the first step.
+  void begin(System& system, const Real& t, const X& state) {
+    system.evaluate(t, state);
+    for (const auto& contact : system.contacts())
+      for (const auto& pair : pairs_)
+        if (pair.a == contact.a && pair.b == contact.b) find_corners(system, contact, pair);
+    last_ = values(system, t, state);
+    small_.assign(last_.size(), small);
+    for (std::size_t k = 0; k < corners_.size(); ++k)
+      if (corners_[k].is_near) small_[first_corner_ + k] = drift_;
+    armed_.resize(last_.size());
+    for (std::size_t i = 0; i < last_.size(); ++i) armed_[i] = last_[i] > small_[i];
+  }
+  [[nodiscard]] bool is_empty() const { return last_.empty(); }
+  /// The first time in the present step of the flight at which a guard falls through 0.
+  [[nodiscard]] std::optional<Real> first_change(RigidFlight<Real, Dim>& flight) {
+    constexpr int samples = 8;
+    X state;
+    Real before = flight.begin();
+    for (int sample = 1; sample <= samples; ++sample) {
+      const Real t = sample == samples
+                         ? flight.end()
+                         : flight.begin() + (flight.end() - flight.begin()) * static_cast<Real>(sample) / samples;
+      flight.at(t, state);
+      const std::vector<Real> now = values(flight.system(), t, state);
+      std::optional<Real> first;
+      for (std::size_t i = 0; i < now.size(); ++i) {
+        const Real level = armed_[i] ? Real(0) : -small_[i];
+        if (now[i] < level) {
+          const Real at = root(flight, i, level, before, t, last_[i], now[i]);
+          if (!first || at < *first) first = at;
+        } else if (now[i] > small_[i]) {
+          armed_[i] = true;
+        }
+      }
+      if (first) return first;
+      last_ = now, before = t;
+    }
+    return {};
+  }
+
+ private:
+  static constexpr Real small = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-10);
+  struct Corner {
+    std::uint32_t contact = 0;
+    V in_body{};
+    bool of_b = false;
+    Real rounding{}, size{};
+    bool is_near = false;  // at the beginning
+  };
+
+  [[nodiscard]] Real root(RigidFlight<Real, Dim>& flight, std::size_t i, const Real& level, const Real& near,
+                          const Real& far, const Real& value_near, const Real& value_far) {
+    X state;
+    const auto beyond = [&](const Real& t) {
+      flight.at(t, state);
+      return level - values(flight.system(), t, state)[i];
+    };
+    if (!(level - value_near <= Real(0))) return far;
+    return enclose_root<Real>(beyond, near, far, level - value_near, level - value_far).far;
+  }
+  /// The corners of the other body that may come to lie on the face of a contact.
+  void find_corners(const System& system, const ActingContact<Real, Dim>& contact, const WatchedPair<Real, Dim>& pair) {
+    using Kind = typename ContactFeature<Real, Dim>::Kind;
+    const Kind kind = contact.feature.kind;
+    if (kind != Kind::face_of_a && kind != Kind::face_of_b) return;
+    const bool of_b = kind == Kind::face_of_a;
+    const ExactPart<Real, Dim>& part = of_b ? pair.part_b : pair.part_a;
+    if (part.is_wall()) return;
+    const auto number = static_cast<std::uint32_t>(&contact - system.contacts().data());
+    for (const V& corner : part.convex->core.corners) {
+      Corner one{number, part.in_body.place(corner), of_b, part.rounding(), part.convex->reach};
+      const auto touches = [&](const auto& other) {
+        return other.a == contact.a && other.b == contact.b &&
+               (of_b ? other.feature.point_b : other.feature.point_a) == one.in_body;
+      };
+      if (std::ranges::any_of(system.contacts(), touches)) continue;
+      one.is_near = gap_of(system, one) <= near_;
+      corners_.push_back(one);
+    }
+  }
+  [[nodiscard]] Real gap_of(const System& system, const Corner& corner) const {
+    const auto& contact = system.contacts()[corner.contact];
+    ContactFeature<Real, Dim> feature = contact.feature;
+    (corner.of_b ? feature.point_b : feature.point_a) = corner.in_body;
+    return place_of(feature, system.bodies()[contact.a], system.bodies()[contact.b]).gap / corner.size;
+  }
+  [[nodiscard]] std::vector<Real> values(System& system, const Real& t, const X& state) {
+    system.evaluate(t, state);
+    std::vector<Real> all;
+    const auto contacts = system.contacts();
+    for (std::size_t k = 0; k < contacts.size(); ++k) all.push_back(system.press(k) / force_);
+    if constexpr (Dim == 2) add_rubbing(system, all);
+    first_corner_ = all.size();
+    for (const Corner& corner : corners_) all.push_back(gap_of(system, corner));
+    for (const WatchedPair<Real, Dim>& pair : pairs_) {
+      const auto& part = pair.part_b;
+      const Real gap = separation_of(pair.part_a, system.bodies()[pair.a], part, system.bodies()[pair.b]).gap;
+      all.push_back(drift_ - gap / part.convex->reach), all.push_back(drift_ + gap / part.convex->reach);
+    }
+    add_motors(system, all);
+    return all;
+  }
+  void add_rubbing(const System& system, std::vector<Real>& all) const {
+    const auto contacts = system.contacts();
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const auto& one = contacts[k];
+      if (!one.is_first || one.rubbing == Rubbing::none) continue;
+      if (one.rubbing == Rubbing::sticks) {
+        Real most(0);
+        for (std::size_t l = 0; l < contacts.size(); ++l)
+          if (contacts[l].pair == one.pair) most += one.friction * system.press(l);
+        all.push_back((most - std::abs(system.stick(k))) / force_);
+        continue;
+      }
+      const auto &a = system.bodies()[one.a], &b = system.bodies()[one.b];
+      const Real slip = across_row(place_of(one.feature, a, b), a, b).rate_of(a, b);
+      all.push_back((one.rubbing == Rubbing::forwards ? slip : -slip) / speed_);
+    }
+  }
+  void add_motors(const System& system, std::vector<Real>& all) const {
+    for (std::size_t j = 0; j < system.joints().size(); ++j) {
+      const auto& joint = system.joints()[j];
+      if (joint.motor == MotorMode::none) continue;
+      const JointMotor<Real>& motor = *joint.joint.motor;
+      if (!(motor.most < std::numeric_limits<Real>::infinity())) continue;
+      if (joint.motor == MotorMode::keeps_speed) {
+        all.push_back(motor.most > Real(0) ? 1 - std::abs(system.load_of(j).motor) / motor.most : Real(1));
+      } else {
+        const Real behind = motor.speed - system.motor_rate(j);
+        all.push_back((joint.motor == MotorMode::forwards ? behind : -behind) /
+                      std::max(std::abs(motor.speed), Real(1)));
+      }
+    }
+  }
+
+  Real near_, drift_, force_, speed_;  // force_ and speed_: by which these are divided
+  std::vector<WatchedPair<Real, Dim>> pairs_;
+  std::vector<Corner> corners_;
+  std::size_t first_corner_ = 0;    // among the guards
+  std::vector<Real> last_, small_;  // small_: a guard that has not been above this is not to fall below its negative
+  std::vector<bool> armed_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,320 @@
+// An instant at which bodies touch: the impulses of what approaches, and then which contacts last.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/event_driven/exact_engine.hpp>
+#include <continuo/bodies/exact_rigid/complementarity.hpp>
+#include <continuo/bodies/exact_rigid/friction_modes.hpp>
+#include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
+
+namespace continuo {
+
+/// A point at which two parts touch, with the numbers of their bodies in the system.
+template <class Real, int Dim>
+struct TouchingPoint {
+  std::uint32_t pair = 0;  // of parts
+  std::uint32_t a = 0, b = 0;
+  Vector<Real, Dim> normal{}, place{};  // the normal is from a to b
+  Material<Real> material{};            // of both surfaces
+  std::optional<ContactFeature<Real, Dim>> feature{};
+};
+
+template <class Real, int Dim>
+class ContactInstant {
+ public:
+  using V = Vector<Real, Dim>;
+  using Row = MotionRow<Real, Dim>;
+  using Point = TouchingPoint<Real, Dim>;
+  using System = RigidSystem<Real, Dim>;
+
+  /// Points are sorted by their pairs. Approaches up to `slow` are no impacts where a contact loses energy.
+  ContactInstant(System& system, std::span<const Point> points, const Real& slow)
+      : system_(system), points_(points), slow_(slow) {}
+
+  /// Resolves all impacts. Those that approach are struck together, in rounds, until none approaches: a round can bring
+  /// others together. So the energy never grows, and is kept where restitution is 1 and nothing rubs: with u before and
+  /// u' = -e u or more after, impulses f add f . (u + u') / 2, and u < 0 of all.
+  /// Contacts at rest are struck too where nothing bounces, and else only once something makes them approach: so the
+  /// last of some balls in a row leaves as fast as the first came. Calls `struck(k, impulse)` for every impulse along
+  /// the normal of point k.
+  template <class Struck>
+  [[nodiscard]] Status strike(Struck&& struck) {
+    constexpr int most_rounds = 1000, elastic_rounds = 500;
+    for (int round = 0; round < most_rounds; ++round) {
+      std::vector<std::size_t> approaching;
+      for (std::size_t k = 0; k < points_.size(); ++k)
+        if (rate_of(k) < -rounding_of(k)) approaching.push_back(k);
+      if (approaching.empty()) return {};
+      if (std::ranges::none_of(approaching, [&](std::size_t k) { return bounces(k, round >= elastic_rounds); }))
+        add_closed(approaching);
+      if (Status fault = strike_together(approaching, round >= elastic_rounds, struck); !fault) return fault;
+    }
+    return cannot_continue("an impact of many bodies does not end: bodies are jammed between others");
+  }
+
+  /// Of the contacts that do not part, those that last: forces press them together.
+  [[nodiscard]] Status choose_lasting(const Real& t) {
+    system_.find_free_motion(t);
+    closed_.clear(), lasting_.clear();
+    for (std::size_t k = 0; k < points_.size(); ++k)
+      if (std::abs(rate_of(k)) <= slow_of(k)) closed_.push_back(k);
+    if (closed_.empty()) return {};
+    for (const std::size_t k : closed_)
+      if (!points_[k].feature)
+        return cannot_continue(
+            "two bodies touch by features of which the exact motion cannot keep a contact: sharp "
+            "corners or edges that lie on each other");
+    for (const std::size_t k : closed_)
+      if (points_[k].material.friction > Real(0)) return choose_with_friction();
+    return choose_without_friction();
+  }
+  struct LastingPoint {
+    std::size_t point = 0;
+    Rubbing rubbing = Rubbing::none;
+  };
+  [[nodiscard]] std::span<const LastingPoint> lasting() const { return lasting_; }
+  /// Points that neither part nor approach.
+  [[nodiscard]] std::span<const std::size_t> closed() const { return closed_; }
+
+ private:
+  using Moved = Moving<Real, Dim>;
+
+  /// Whether point k, which approaches, is to part again.
+  [[nodiscard]] bool bounces(std::size_t k, bool is_plastic) const {
+    const bool is_gentle = loses(k) && (is_plastic || rate_of(k) >= -slow_);
+    return !is_gentle && points_[k].material.restitution > Real(0);
+  }
+  /// Adds the points that neither part nor approach, in order.
+  void add_closed(std::vector<std::size_t>& approaching) const {
+    for (std::size_t k = 0; k < points_.size(); ++k)
+      if (std::abs(rate_of(k)) <= rounding_of(k)) approaching.push_back(k);
+    std::ranges::sort(approaching);
+  }
+
+  [[nodiscard]] const ExactBody<Real, Dim>& body(std::uint32_t k) const { return std::as_const(system_).bodies()[k]; }
+  [[nodiscard]] Row row_of(std::size_t k) const {
+    const Point& at = points_[k];
+    Row row = row_along(body(at.a), body(at.b), Moved{at.normal, {}}, Moved{at.place, {}});
+    row.a = at.a, row.b = at.b;
+    return row;
+  }
+  [[nodiscard]] Row across_of(std::size_t k) const {
+    const Point& at = points_[k];
+    V across = at.normal;
+    across[0] = -at.normal[1], across[1] = at.normal[0];
+    Row row = row_along(body(at.a), body(at.b), Moved{across, {}}, Moved{at.place, {}});
+    row.a = at.a, row.b = at.b;
+    return row;
+  }
+  [[nodiscard]] Real rate_of(const Row& row) const { return row.rate_of(body(row.a), body(row.b)); }
+  [[nodiscard]] Real rate_of(std::size_t k) const { return rate_of(row_of(k)); }
+  /// The rounding of a rate, and what forces would make of it in a millionth of the contact time.
+  [[nodiscard]] Real rounding_of(std::size_t k) const {
+    const Row row = row_of(k);
+    const auto speed = [](const auto& of, const auto& lever) { return length(of.v) + length(lever) * length(of.spin); };
+    return std::max(Real(slow_ / 1'000'000), Real(64 * std::numeric_limits<Real>::epsilon() *
+                                                  (speed(body(row.a), row.lever_a) + speed(body(row.b), row.lever_b))));
+  }
+  [[nodiscard]] bool loses(std::size_t k) const {
+    return points_[k].material.restitution < Real(1) || points_[k].material.friction > Real(0);
+  }
+  [[nodiscard]] Real slow_of(std::size_t k) const {
+    return std::max(Real(16 * rounding_of(k)), loses(k) ? slow_ : Real(0));
+  }
+  [[nodiscard]] std::vector<Real> joint_rates(const std::vector<Row>& joints) const {
+    std::vector<Real> rates;
+    for (const Row& row : joints) rates.push_back(rate_of(row) - row.rate);
+    return rates;
+  }
+  void apply(const Row& row, const Real& impulse) {
+    const V along = row.direction * impulse;
+    system_.bodies()[row.b].push(along, Spin<Real, Dim>(row.lever_b * impulse));
+    system_.bodies()[row.a].push(-along, Spin<Real, Dim>(row.lever_a * -impulse));
+  }
+  void apply(const std::vector<Row>& rows, std::span<const Real> impulses) {
+    for (std::size_t r = 0; r < rows.size(); ++r) apply(rows[r], impulses[r]);
+  }
+
+  template <class Struck>
+  [[nodiscard]] Status strike_together(const std::vector<std::size_t>& approaching, bool is_plastic, Struck&& struck) {
+    const std::vector<Row> joints = system_.joint_rows();
+    std::vector<Row> rows;
+    std::vector<Real> before, rate_after;
+    bool rubs = false;
+    for (const std::size_t k : approaching) {
+      rows.push_back(row_of(k));
+      before.push_back(rate_of(rows.back()));
+      rate_after.push_back(bounces(k, is_plastic) ? -points_[k].material.restitution * before.back() : Real(0));
+      rubs = rubs || points_[k].material.friction > Real(0);
+    }
+    std::vector<Real> impulses;
+    if (rubs) {
+      if (Status fault = find_rubbing_impulses(approaching, joints, before, rate_after, rows, impulses); !fault)
+        return fault;
+    } else {
+      ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+      std::vector<Real> q = before;
+      for (std::size_t k = 0; k < q.size(); ++k) q[k] -= rate_after[k];
+      const std::vector<Real> rates = reduced.rates(joint_rates(joints), q);
+      Real least(0);
+      for (const Real& rate : rates)
+        least = std::max(least, 16 * std::numeric_limits<Real>::epsilon() * std::abs(rate));
+      impulses = complementary_forces<Real>(reduced.matrix(), rates, least);
+      if (impulses.empty()) return cannot_continue("the impulses of an impact cannot be found: bodies are jammed");
+    }
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    const std::vector<Real> answers = reduced.answers(joint_rates(joints), impulses);
+    apply(rows, impulses), apply(joints, answers);
+    for (std::size_t k = 0; k < approaching.size(); ++k) struck(approaching[k], impulses[k]);
+    return {};
+  }
+  [[nodiscard]] const ExactBody<Real, Dim>* body_data() const { return std::as_const(system_).bodies().data(); }
+
+  // With friction.
+
+  [[nodiscard]] static Status no_friction_in_space() {
+    return cannot_continue(
+        "the exact motion knows no friction between shapes in space: give one of the two materials "
+        "a friction of 0, or use FastMotion");
+  }
+  [[nodiscard]] static Status jammed() {
+    return cannot_continue(
+        "no forces of contacts with friction belong together: bodies jam (Painleve's paradox), or "
+        "too many rub at once");
+  }
+  /// The rows of these points, and after them one across for each of their pairs; the pairs by their places.
+  [[nodiscard]] FrictionProblem<Real> problem_of(std::span<const std::size_t> points, std::vector<Row>& rows,
+                                                 std::vector<std::size_t>& leaders) const {
+    FrictionProblem<Real> problem;
+    leaders.clear();
+    for (const std::size_t k : points) {
+      if (leaders.empty() || points_[leaders.back()].pair != points_[k].pair) {
+        leaders.push_back(k);
+        problem.pairs.push_back({.friction = points_[k].material.friction});
+      }
+      problem.pair_of_point.push_back(static_cast<std::uint32_t>(leaders.size() - 1));
+    }
+    for (const std::size_t k : leaders) rows.push_back(across_of(k));
+    return problem;
+  }
+  /// Newton's law along the normals, Coulomb's law across with the velocities after the impact. Where these two would
+  /// add energy (T. R. Kane, D. A. Levinson, "Dynamics", 1985), restitution is lowered until they do not. Adds the rows
+  /// across to `rows`.
+  [[nodiscard]] Status find_rubbing_impulses(const std::vector<std::size_t>& approaching,
+                                             const std::vector<Row>& joints, const std::vector<Real>& before,
+                                             const std::vector<Real>& rate_after, std::vector<Row>& rows,
+                                             std::vector<Real>& impulses) {
+    if constexpr (Dim == 3) {
+      return no_friction_in_space();
+    } else {
+      std::vector<std::size_t> leaders;
+      FrictionProblem<Real> problem = problem_of(approaching, rows, leaders);
+      ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+      problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+      std::vector<Real> rates;
+      for (const Row& row : rows) rates.push_back(rate_of(row));
+      const std::vector<Real> free = reduced.rates(joint_rates(joints), rates);
+      const auto solve = [&](const Real& share) {
+        problem.rates = free;
+        for (std::size_t k = 0; k < before.size(); ++k) problem.rates[k] -= share * rate_after[k];
+        return FrictionModes<Real>(problem).solve();
+      };
+      const auto gain = [&](const std::vector<Real>& forces) {
+        Real sum(0);
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+          Real after = free[r];
+          for (std::size_t c = 0; c < rows.size(); ++c) after += problem.matrix[c * rows.size() + r] * forces[c];
+          sum += forces[r] * (free[r] + after) / 2;
+        }
+        return sum;
+      };
+      auto found = solve(Real(1));
+      if (found && gain(found->forces) > Real(0)) {
+        Real low(0), high(1);
+        for (int round = 0; round < std::numeric_limits<Real>::digits; ++round) {
+          const auto trial = solve((low + high) / 2);
+          (trial && !(gain(trial->forces) > Real(0)) ? low : high) = (low + high) / 2;
+        }
+        found = solve(low);
+      }
+      if (!found) return jammed();
+      impulses = found->forces;
+      return {};
+    }
+  }
+  [[nodiscard]] Status choose_with_friction() {
+    if constexpr (Dim == 3) {
+      return no_friction_in_space();
+    } else {
+      std::vector<Row> rows, plain;
+      std::vector<std::size_t> leaders;
+      for (const std::size_t k : closed_) rows.push_back(lasting_row(k, false));
+      FrictionProblem<Real> problem = problem_of(closed_, plain, leaders);
+      for (std::size_t p = 0; p < leaders.size(); ++p) {
+        rows.push_back(lasting_row(leaders[p], true));
+        const Real slip = rate_of(rows.back()), slow = slow_of(leaders[p]);
+        auto& pair = problem.pairs[p];
+        pair.may_stick = std::abs(slip) <= slow;
+        pair.may_go_forwards = slip >= -slow, pair.may_go_backwards = slip <= slow;
+      }
+      const std::vector<Row> joints = system_.joint_rows();
+      ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+      problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+      problem.rates = reduced.rates(accelerations(joints), accelerations(rows));
+      const bool moves = std::ranges::any_of(problem.rates, [](const Real& rate) { return rate != Real(0); });
+      if (!moves) return {};
+      const auto found = FrictionModes<Real>(problem).solve();
+      if (!found) return jammed();
+      for (std::size_t k = 0; k < closed_.size(); ++k)
+        if (found->presses[k]) lasting_.push_back({closed_[k], found->rubbing[problem.pair_of_point[k]]});
+      return {};
+    }
+  }
+  [[nodiscard]] Status choose_without_friction() {
+    std::vector<Row> rows;
+    for (const std::size_t k : closed_) rows.push_back(lasting_row(k, false));
+    const std::vector<Row> joints = system_.joint_rows();
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    const std::vector<Real> q = reduced.rates(accelerations(joints), accelerations(rows));
+    Real greatest(0);
+    for (const Real& value : q) greatest = std::max(greatest, std::abs(value));
+    const Real least = (std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-11)) * greatest;
+    const std::vector<Real> forces = complementary_forces<Real>(reduced.matrix(), q, least);
+    if (forces.empty()) return cannot_continue("the forces of contacts cannot be found");
+    for (std::size_t k = 0; k < closed_.size(); ++k)
+      if (forces[k] > Real(0)) lasting_.push_back({closed_[k], Rubbing::none});
+    return {};
+  }
+  [[nodiscard]] Row lasting_row(std::size_t k, bool is_across) const {
+    const Point& at = points_[k];
+    const ContactPlace<Real, Dim> place = place_of(*at.feature, body(at.a), body(at.b));
+    Row row = normal_row(place, body(at.a), body(at.b));
+    if constexpr (Dim == 2) {
+      if (is_across) row = across_row(place, body(at.a), body(at.b));
+    }
+    row.a = at.a, row.b = at.b;
+    return row;
+  }
+  [[nodiscard]] std::vector<Real> accelerations(const std::vector<Row>& rows) const {
+    std::vector<Real> all;
+    for (const Row& row : rows) all.push_back(system_.free_acceleration(row));
+    return all;
+  }
+
+  System& system_;
+  std::span<const Point> points_;
+  Real slow_;
+  std::vector<std::size_t> closed_;
+  std::vector<LastingPoint> lasting_;
+};
+
+}  // namespace continuo
