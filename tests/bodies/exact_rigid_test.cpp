@@ -319,7 +319,7 @@ TEST(ExactRigid, AMotorHasItsTorqueUntilItHasItsSpeed) {
 
 /// The deepest overlap of two boxes of a world.
 template <int Dim>
-double deepest_overlap(const World<double, Dim>& world) {
+double overlap_of_boxes(const World<double, Dim>& world) {
   double deepest = 0;
   const auto pose = [&](std::size_t i) { return Pose<double, Dim>{world.position[i], rotation(world.orientation[i])}; };
   for (std::size_t i = 0; i < world.size(); ++i) {
@@ -358,7 +358,7 @@ void expect_elastic_boxes_keep_energy(int boxes, double duration) {
   const double before = energy(world);
   for (int k = 1; k <= 20; ++k) {
     advance(motion, duration * k / 20);
-    EXPECT_LT(deepest_overlap(world), 1e-10);
+    EXPECT_LT(overlap_of_boxes(world), 1e-10);
   }
   EXPECT_NEAR(energy(world) / before, 1, 1e-12);
   EXPECT_GT(motion.statistics().collisions, 4u);

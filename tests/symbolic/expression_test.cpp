@@ -48,10 +48,10 @@ TEST_F(Expression, NoExpressionIsThereTwice) {
     NodeId made;
     switch (random() % 10) {
       case 0:
-        made = g.constant(random() % 50);
+        made = g.constant(static_cast<double>(random() % 50));
         break;
       case 1:
-        made = g.variable(random() % 90);
+        made = g.variable(static_cast<std::uint32_t>(random() % 90));
         break;
       case 2:
         made = g.select(g.less(any(), any()), any(), any());
