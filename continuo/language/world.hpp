@@ -39,6 +39,7 @@ struct CombineRuleDescription {
 
 /// The shape of a body in a frame of its own, as in shapes/shape.hpp. What another kind has is not valid.
 struct ShapeDescription {
+  /// What shapes there are.
   enum class Kind : std::uint8_t { ball, capsule, box, hull };
   Kind kind = Kind::ball;
   NodeId radius;                                 // of a ball, and of the ends of a capsule

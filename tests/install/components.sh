@@ -43,6 +43,6 @@ must_say "$("$cmake" --build "$scratch/solve" --target pattern 2>&1 || true)" \
 must_say "$(configure bodies bodies || true)" \
   "the component bodies needs packages that are not installed: libqhull-dev libtbb-dev libxsimd-dev libsuitesparse-dev"
 must_say "$(configure language 'solve;language' || true)" \
-  "the component language needs packages that are not installed: libfmt-dev libudunits2-dev nlohmann-json3-dev"
+  "the component language needs packages that are not installed: libqhull-dev libfmt-dev libudunits2-dev nlohmann-json3-dev"
 must_say "$(configure unknown solver || true)" "there is no component solver, but status numerics system methods solve"
 must_say "$(configure everything || true)" "find_package(Continuo COMPONENTS solve)"
