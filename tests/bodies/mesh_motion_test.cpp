@@ -280,7 +280,7 @@ TEST(MeshMotion, CategoriesChooseMeshes) {
   World<double, 3> world;  // of balls only
   world.gravity = {{0, 0, -9.81}};
   ASSERT_TRUE(world.add_mesh({.shape = irregular_mesh<double>(8, 8, 1, -4, -4, flat), .mask = 2}));
-  for (const std::uint64_t category : {1, 2})
+  for (const std::uint64_t category : {std::uint64_t{1}, std::uint64_t{2}})
     ASSERT_TRUE(world.add({.position = {{1.2 * double(category), 0, 0.5}}, .traits = {.category = category}}));
   FastMotion<double, 3> motion(world);
   advance(motion, 60);

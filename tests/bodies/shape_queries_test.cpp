@@ -179,8 +179,8 @@ TEST(ShapeQueries, RaysHitMeshesFromTheirFreeSide) {
   for (int k = 0; k < 500; ++k) {
     const auto through = random_vector<3>(engine, 2);
     // Every other ray goes through a corner of a triangle.
-    const Vector<double, 3> target =
-        k % 2 == 0 ? Vector<double, 3>{{through[0], through[1], 0.5 * through[0]}} : sheet.corners[40 + k % 90];
+    const Vector<double, 3> target = k % 2 == 0 ? Vector<double, 3>{{through[0], through[1], 0.5 * through[0]}}
+                                                : sheet.corners[static_cast<std::size_t>(40 + k % 90)];
     if (std::abs(target[0]) > 2.5 || std::abs(target[1]) > 2.5) continue;
     const Vector<double, 3> from = target + Vector<double, 3>{{through[2], through[0], 3}};
     const auto down = queries.first_hit({.origin = from, .direction = target - from});
