@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <ranges>
 #include <span>
 #include <utility>
@@ -50,6 +51,10 @@ class RigidContacts {
   [[nodiscard]] std::span<const PartContact<Real, Dim>> all() const { return contacts_; }
   /// Those of parts and walls.
   [[nodiscard]] std::span<const PartContact<Real, Dim>> without_meshes() const { return all().first(without_meshes_); }
+  /// The shapes of bodies have changed: no points are carried along, see `follow`.
+  void find_anew() {
+    for (PartContact<Real, Dim>& found : contacts_) found.contact.margin = -std::numeric_limits<Real>::infinity();
+  }
   void clear() { contacts_.clear(), before_.clear(), without_meshes_ = 0; }
   /// Contacts with their impulses; the bodies are below `bodies`.
   template <class Archive>

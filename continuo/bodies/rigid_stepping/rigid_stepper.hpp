@@ -125,6 +125,7 @@ class RigidStepper {
   void load() {
     const std::size_t n = world_.size(), walls = world_.walls().size();
     if (!is_stale_ && !pairs_.has_meshes_of(world_)) sleep_ = {};
+    if (!is_stale_ && !pairs_.is_of(world_)) contacts_.find_anew();
     if (is_stale_ || bodies_.size() != n + walls + 1 || !pairs_.is_of(world_)) {
       bodies_.assign(n + walls + 1, {});
       pairs_.begin(world_);
