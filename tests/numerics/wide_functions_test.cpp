@@ -63,7 +63,8 @@ TEST_F(WideFunctions, PowersAreWithinTwoUnitsAlsoOfBasesNearOne) {
 }
 
 TEST_F(WideFunctions, PowersOutOfTheCommonRangeAreThoseOfTheLibrary) {
-  constexpr double infinity = std::numeric_limits<double>::infinity(), nothing = std::numeric_limits<double>::quiet_NaN(), least = 5e-324;
+  constexpr double infinity = std::numeric_limits<double>::infinity(),
+                   nothing = std::numeric_limits<double>::quiet_NaN(), least = 5e-324;
   // libmvec's are within four units, and long doubles below the least normal double have more digits than it.
   for (const double x : {0.0, -0.0, 1.0, -1.0, 2.0, -3.0, 1e300, -1e300, 1e-310, least, infinity, -infinity, nothing})
     for (const double y : {0.0, 1.0, -1.0, 2.0, 3.0, -3.0, 0.5, 1e-300, infinity, -infinity, nothing})

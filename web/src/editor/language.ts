@@ -51,6 +51,8 @@ export function piece(stream: StringStream, state: State): Piece {
   if (name) {
     const word = name[0];
     if (atStart && statements.has(word)) return "keyword";
+    // `ball (x, y)` draws a ball, `ball arm to frame` joins two bodies.
+    if (atStart && shapes.has(word) && /^\s*\(/.test(stream.string.slice(stream.pos))) return "typeName";
     if (atStart && ofBlocks.has(word) && /^\s+[\p{L}\d({-]/u.test(stream.string.slice(stream.pos))) return "keyword";
     if (functions.has(word) && stream.peek() === "(") return "function";
     if (shapes.has(word) && /^\s*(\(|-?\d|\w)/.test(stream.string.slice(stream.pos))) return "typeName";

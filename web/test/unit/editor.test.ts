@@ -26,6 +26,7 @@ test("words, numbers and ranges are told apart", () => {
   const kinds = Object.fromEntries(pieces('run 0..60 [s] method rk4 step 1e-3 # comment "no"'));
   expect(kinds).toMatchObject({ run: "keyword", "0": "number", "..": "operator", "60": "number", "[s]": "unit", method: "modifier", "1e-3": "number", '# comment "no"': "comment" });
   expect(Object.fromEntries(pieces("draw { ball (x, y) radius 0.1 }"))).toMatchObject({ draw: "keyword", ball: "typeName", x: "variableName" });
+  expect(Object.fromEntries(pieces("world { ball arm to frame at (0, 1) }"))).toMatchObject({ ball: "keyword", arm: "variableName" });
   expect(pieces("x := sin(t)").map(([, kind]) => kind)).toEqual(["variableName", "operator", "function", null, "variableName", null]);
 });
 
