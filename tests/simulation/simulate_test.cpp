@@ -274,6 +274,26 @@ check x(1) = 3 within 1e-6
   EXPECT_NEAR(run.checks[4].value, std::cos(2.0), 1e-6);
 }
 
+TEST(Simulate, WhatHoldsAlwaysMayBeHeldAgainstTheStart) {
+  const auto run = run_of(R"(
+input wind = 2
+x' = 1; y' = -y
+x(0) = 3; y(0) = 5
+output total = x + y
+run 0..1
+initially { y = 4 }
+check always x = x(0) + t within 1e-12
+check always total(0) = 7 within 1e-12
+check always y <= y(0)
+check always x(0) = 4 within 1e-12
+check always y <= x(0)
+)");
+  ASSERT_EQ(run.checks.size(), 5u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(run.checks[i].passed) << run.checks[i].text << run.checks[i].message;
+  EXPECT_FALSE(run.checks[3].passed);
+  EXPECT_FALSE(run.checks[4].passed);  // 4 at the start
+}
+
 TEST(Simulate, ParametersOfTheRunReplaceThoseOfTheText) {
   const auto run = run_of("param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..1 tol 1e-10\n", {.parameters = {{"k", 2.0}}});
   EXPECT_NEAR(run.final_state()[0], std::exp(-2.0), 1e-9);

@@ -33,6 +33,7 @@ RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool kee
                          std::vector<double> sample_times, std::span<const NodeId> watched, OnRow on_row)
     : program_(program),
       times_(plan),
+      start_(plan.from),
       every_step_(plan.output == OutputPlan::Kind::steps),
       keep_rows_(keep_rows),
       on_row_(std::move(on_row)),
@@ -49,10 +50,28 @@ RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool kee
   watched_ = Evaluation(program.shared_tape_of(all), plan.variables);
   watched_values_.resize(all.size());
   for (const double t : sample_times) samples_.push_back({t, {}});
+  const auto reads_start = [](const Check& check) {
+    return check.measure == Measure::always && !check.samples.empty();
+  };
+  if (std::ranges::any_of(model.checks, reads_start)) start_variables_ = plan.variables;
 }
 
 void RunRecorder::set_inputs(Evaluation& evaluation, double t) const {
   for (const TableInput& input : program_.step_inputs) evaluation.set(input.variable, input.table.value(t));
+}
+
+/// `check always x < x(0) + 1`: what x(0) is.
+void RunRecorder::set_start_values(double t, const X& x) {
+  if (start_variables_.empty()) return;
+  const Model& model = program_.model;
+  start_variables_[Layout::time] = t;
+  std::ranges::copy(x, start_variables_.begin() + model.layout.states);
+  for (const TableInput& input : program_.step_inputs) start_variables_[input.variable] = input.table.value(t);
+  for (const Check& check : model.checks) {
+    if (check.measure != Measure::always) continue;
+    for (const Sample& sample : check.samples)
+      watched_.set(sample.variable, evaluate(model, sample.of, start_variables_));
+  }
 }
 
 void RunRecorder::add_row(double t, const X& x) {
@@ -107,6 +126,7 @@ void RunRecorder::watch(double t, const X& x) {
 
 void RunRecorder::begin(double t, const X& x) {
   x_ = x;
+  set_start_values(t, x);
   add_row(t, x);
   watch(t, x);
   while (times_[next_output_] <= t) ++next_output_;
@@ -135,6 +155,7 @@ void RunRecorder::on_segment(double to, const At& at) {
 
 void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
   for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
+  if (!samples_.empty() && t == start_) set_start_values(t, after);
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;
   if (!wants_rows() || (names.empty() && before == after)) return;
@@ -196,6 +217,9 @@ bool RunRecorder::add(const RecordedPart& part) {
   next_output_ = part.next_output;
   next_sample_ = part.next_sample;
   std::ranges::copy(part.samples, samples_.begin());
+  if (const auto start = std::ranges::find(samples_, start_, &SampledState::t);
+      start != samples_.end() && !start->x.empty())
+    set_start_values(start->t, start->x);
   extremes_ = part.extremes;
   energy_ = part.energy;
   x_ = part.x;

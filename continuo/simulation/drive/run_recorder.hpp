@@ -96,9 +96,11 @@ class RunRecorder {
       take(samples_[next_sample_]);
   }
   void set_inputs(Evaluation& evaluation, double t) const;
+  void set_start_values(double t, const X& x);
 
   const ModelProgram& program_;
   OutputTimes times_;
+  double start_;
   bool every_step_, keep_rows_;
   OnRow on_row_;
   bool is_refused_ = false, collects_parts_ = false;
@@ -109,6 +111,7 @@ class RunRecorder {
   std::vector<RecordedEvent> events_;
   Evaluation quantities_, watched_;
   std::vector<double> quantity_values_, watched_values_;
+  std::vector<double> start_variables_;  // empty where no check reads values at the start always
   std::vector<SampledState> samples_;
   std::vector<Extremes> extremes_;  // of the total energy and its scale (if any), then of `watched`
   std::optional<EnergyBalance> energy_;

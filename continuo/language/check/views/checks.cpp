@@ -125,6 +125,18 @@ Value Checks::measure(const ast::Measure& text, Span span, Scope& scope, Check& 
   return time;
 }
 
+/// What is to hold always is looked at while the run goes on, when later values are not known.
+bool Checks::are_at_start(const std::vector<Sample>& samples, const ast::Check& text) const {
+  const auto& from = expressions_.workspace.run.from;
+  const double start = from ? from->value : 0;
+  if (std::ranges::all_of(samples, [&](const Sample& sample) { return sample.when.value == start; })) return true;
+  report_.fail("E281", cover(text.measure_span, text.value.span),
+               "what holds always can be held against values at the start only",
+               "a time here is another one than the start of the run",
+               "check the value at that time for itself, or write down the number");
+  return false;
+}
+
 void Checks::add(const ast::Check& text, const Scope& outer, Span span) {
   std::vector<Sample> samples;
   Scope scope = outer;
@@ -151,6 +163,7 @@ void Checks::add(const ast::Check& text, const Scope& outer, Span span) {
     if (!tolerance.bad)
       check.tolerance = expressions_.operations.in_unit(*text.tolerance, tolerance, both, "the check");
   }
+  if (check.measure == Measure::always && !are_at_start(samples, text)) return;
   check.samples = std::move(samples);
   made_.push_back(std::move(check));
 }

@@ -18,6 +18,7 @@ class Checks {
   [[nodiscard]] Value measure(const ast::Measure& text, Span span, Scope& scope, Check& check);
 
  private:
+  [[nodiscard]] bool are_at_start(const std::vector<Sample>& samples, const ast::Check& text) const;
   void add(const ast::Check& text, const Scope& outer, Span span);
   [[nodiscard]] Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
   [[nodiscard]] Moment moment(const ast::Moment& text, Scope& scope, Span span);

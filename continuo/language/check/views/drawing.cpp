@@ -75,7 +75,8 @@ std::vector<DrawItem> Drawing::make() {
 void Drawing::add(const std::vector<ast::DrawItem>& items, Scope& scope) {
   for (const ast::DrawItem& item : items) {
     if (const auto* family = std::get_if<ast::DrawFamily>(&item.node)) {
-      expressions_.indices.for_each_index(family->index, family->range, scope, [&] { add(family->body, scope); });
+      expressions_.indices.for_each_index(family->index, family->range, scope,
+                                          [&](std::size_t) { add(family->body, scope); });
     } else {
       add_shape(std::get<ast::Shape>(item.node), item.span, scope);
     }
