@@ -44,7 +44,8 @@ void declare(const ast::Model& tree, Declarations& declared, Expressions& expres
 /// From the lists to the model: all expressions as nodes, with their units.
 void translate(const Declarations& declared, Expressions& expressions, WorldAtWork& world, Model& model) {
   Workspace& workspace = expressions.workspace;
-  constexpr std::size_t nodes_of_member = 6;  // or more
+  // Room that nobody writes to costs nothing where memory is given by the page; in a browser it does.
+  constexpr std::size_t nodes_of_member = sizeof(void*) < 8 ? 6 : 12;
   workspace.graph.reserve(nodes_of_member * workspace.written_out);
   store(make_parameters(expressions), model);  // and their values, to the registers of the workspace
   check_overrides(model.parameters, expressions);

@@ -12,28 +12,25 @@ namespace continuo::model {
 namespace {
 
 constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint8_t many_uses = 16;
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
   h ^= value + 0x9e3779b97f4a7c15u + (h << 6) + (h >> 2);
   return h * 0xff51afd7ed558ccdu;  // multiplier of MurmurHash3's finaliser (A. Appleby, public domain)
 }
 
-/// Where a node is looked for first: at `place` beyond a few points that its shape decides. Nodes of one shape follow
-/// each other so as their arguments do: the members of a family are neighbours in the table, not in all its corners.
+/// Where a node is looked for first: at `place` beyond a point that its shape decides. Variables with numbers that
+/// follow each other are neighbours in the index, not in all its corners, and so are operations on the same first
+/// argument, such as the products of a table.
 struct Home {
   std::uint64_t shape, place;
 };
 
 Home home(const Node& node) {
-  constexpr std::uint32_t near = 1u << 17;
   if (node.op == Op::variable) return {mix(0, node.number >> 24), node.number};
-  const std::uint32_t a = node.a.index, b = node.b.valid() ? node.b.index : a, c = node.c.valid() ? node.c.index : a;
-  const std::uint32_t to_b = b - a + near, to_c = c - a + near;
-  const bool moves_together = to_b < 2 * near && to_c < 2 * near;  // else an argument is the same for all members
-  const std::uint64_t distances = moves_together ? (std::uint64_t{to_b} << 32) | to_c : 0;
-  const std::uint64_t shape = mix(mix(static_cast<std::uint64_t>(node.op), node.number), distances) +
-                              mix(0, std::bit_cast<std::uint64_t>(node.value));
-  return {shape ^ (shape >> 29), moves_together ? a : std::uint64_t{a} + b + c};
+  std::uint64_t shape = mix(mix(static_cast<std::uint64_t>(node.op), node.number), node.a.index);
+  shape = mix(mix(shape, node.c.index), std::bit_cast<std::uint64_t>(node.value));
+  return {shape ^ (shape >> 29), node.b.index};
 }
 
 /// Where it is looked for from then on.
@@ -50,8 +47,8 @@ bool same(const Node& p, const Node& q) {
          std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
 }
 
-/// The bit in Node::uses of the arguments of an operation.
-std::uint8_t kind_of(Op op) {
+/// The bit in Node::uses of the first argument of an operation.
+std::uint16_t kind_of(Op op) {
   switch (op) {
     case Op::add:
       return 1U;
@@ -66,6 +63,11 @@ std::uint8_t kind_of(Op op) {
     default:
       return arity(op) == 1 ? 32U : 64U;
   }
+}
+
+/// The bit of the second.
+std::uint16_t as_second(std::uint16_t kind) {
+  return static_cast<std::uint16_t>(kind << 8U);
 }
 
 /// The empty slot for a node, or the one where `is_it` says that the node in it is equal.
@@ -106,25 +108,6 @@ void Graph::enter(Index& index, std::uint32_t node) {
   ++index.count;
 }
 
-/// Those that were made since the last time. They may be millions, so their slots are asked of the memory some time
-/// before they are needed.
-void Graph::enter_operations() {
-  const std::size_t wanted = 2 * (operations_.count + nodes_.size() - entered_);
-  if (wanted >= operations_.slots.size()) {
-    operations_ = {};
-    operations_.slots.assign(std::bit_ceil(wanted + 1), empty);
-    entered_ = 0;
-  }
-  constexpr std::size_t ahead = 16;
-  for (; entered_ < nodes_.size(); ++entered_) {
-    if (entered_ + ahead < nodes_.size()) {
-      const Home coming = home(nodes_[entered_ + ahead]);
-      __builtin_prefetch(&operations_.slots[(coming.shape + coming.place) & (operations_.slots.size() - 1)], 1);
-    }
-    if (arity(nodes_[entered_].op) > 0) enter(operations_, entered_);
-  }
-}
-
 void Graph::reserve(std::size_t nodes) {
   nodes_.reserve(nodes);
 }
@@ -143,16 +126,61 @@ NodeId Graph::intern(const Node& node) {
   return NodeId{leaves_.slots[slot] = append(node).index};
 }
 
-NodeId Graph::intern_operation(const Node& node) {
-  const std::uint8_t kind = kind_of(node.op);
-  const Arguments all = arguments(node);
-  if (std::ranges::all_of(all, [&](NodeId a) { return (nodes_[a.index].uses & kind) != 0; })) {
-    enter_operations();
-    const std::size_t slot = slot_of(node, operations_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
-    if (operations_.slots[slot] != empty) return NodeId{operations_.slots[slot]};
+bool Graph::has_many_uses(NodeId id) const {
+  return nodes_[id.index].use_count == many_uses;
+}
+
+/// Of the uses of an argument, the one before this one.
+NodeId Graph::use_before(NodeId argument, NodeId use) const {
+  const Node& node = nodes_[use.index];
+  return node.a == argument ? node.use_of_a_before : node.use_of_b_before;
+}
+
+NodeId Graph::find_among_uses(NodeId argument, const Node& node) const {
+  NodeId use = nodes_[argument.index].latest_use;
+  while (use.valid() && !same(nodes_[use.index], node)) use = use_before(argument, use);
+  return use;
+}
+
+NodeId Graph::find_operation(const Node& node) const {
+  const std::uint16_t first = kind_of(node.op), second = as_second(first);
+  if ((nodes_[node.a.index].uses & first) == 0) return {};
+  if (node.b.valid() && (nodes_[node.b.index].uses & second) == 0) return {};
+  if (!has_many_uses(node.a)) return find_among_uses(node.a, node);
+  if (node.b.valid() && !has_many_uses(node.b)) return find_among_uses(node.b, node);
+  const std::size_t slot = slot_of(node, operations_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
+  return NodeId{operations_.slots[slot]};  // not valid where it is empty
+}
+
+/// One use more, before it is among the uses. Where they become many, those that are there move to the index, unless
+/// another argument of theirs still has few.
+void Graph::count_use(NodeId argument) {
+  if (has_many_uses(argument) || ++nodes_[argument.index].use_count < many_uses) return;
+  for (NodeId use = nodes_[argument.index].latest_use; use.valid(); use = use_before(argument, use)) {
+    const Node& node = nodes_[use.index];
+    if (!has_many_uses(node.a) || (node.b.valid() && !has_many_uses(node.b))) continue;
+    make_room(operations_);
+    enter(operations_, use.index);
   }
-  for (const NodeId a : all) nodes_[a.index].uses |= kind;
-  return append(node);
+}
+
+NodeId Graph::intern_operation(const Node& node) {
+  if (const NodeId known = find_operation(node); known.valid()) return known;
+  const std::uint16_t first = kind_of(node.op);
+  const bool has_second = node.b.valid() && node.b != node.a;
+  count_use(node.a);
+  if (has_second) count_use(node.b);
+  const NodeId made = append(node);
+  Node &added = nodes_[made.index], &a = nodes_[node.a.index];
+  added.use_of_a_before = std::exchange(a.latest_use, made);
+  a.uses |= first;
+  if (node.b.valid()) nodes_[node.b.index].uses |= as_second(first);
+  if (has_second) added.use_of_b_before = std::exchange(nodes_[node.b.index].latest_use, made);
+  if (has_many_uses(node.a) && (!node.b.valid() || has_many_uses(node.b))) {
+    make_room(operations_);
+    enter(operations_, made.index);
+  }
+  return made;
 }
 
 NodeId Graph::constant(double value) {

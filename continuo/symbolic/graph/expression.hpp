@@ -34,16 +34,22 @@ struct NodeId {
 
 struct Node {
   Op op = Op::constant;
-  bool finite = false;       // it cannot be infinite or NaN where the variables are not
-  bool corners = false;      // it, or what it is made of, has jumps or kinks that no `smooth` stands around
-  std::uint8_t uses = 0;     // the kinds of operations it is an argument of, a bit for each: see Graph
+  bool finite : 1 = false;   // it cannot be infinite or NaN where the variables are not
+  bool corners : 1 = false;  // it, or what it is made of, has jumps or kinks that no `smooth` stands around
+  // The operations that it is an argument of: how many, up to a limit; their kinds, a bit for each kind and side; and
+  // the latest. See Graph.
+  std::uint8_t use_count : 5 = 0;
+  std::uint16_t uses = 0;
   std::uint32_t number = 0;  // of a variable, or of a table
   NodeId a{}, b{}, c{};      // as many as arity(op)
-  double value = 0;          // of a constant
+  NodeId latest_use{};
+  double value = 0;                             // of a constant
+  NodeId use_of_a_before{}, use_of_b_before{};  // of an operation: the uses of its arguments before it
 };
 
-/// Owns the nodes. An operation is looked for among those that are there only where each of its arguments has a use of
-/// its kind already: the nodes of a large family are made one after the other, and most are known to be new.
+/// Owns the nodes. An operation is looked for among the uses of an argument that has few, else in an index of those
+/// whose arguments all have many; and nowhere where one of its arguments has no use of its kind and side. So the nodes
+/// of a large family, which are made one after the other and are new, cost neither a search nor a place in the index.
 /// The makers simplify as they build: constants are folded, `x + 0`, `1*x`, `--x` and their like
 /// vanish, `x^2` becomes `x*x`. Only what holds for every number is used: `0*x` is 0 where x cannot be infinite.
 class Graph {
@@ -89,14 +95,17 @@ class Graph {
 
   [[nodiscard]] NodeId intern(const Node& node);
   [[nodiscard]] NodeId intern_operation(const Node& node);
+  [[nodiscard]] NodeId find_operation(const Node& node) const;
+  [[nodiscard]] NodeId find_among_uses(NodeId argument, const Node& node) const;
+  [[nodiscard]] NodeId use_before(NodeId argument, NodeId use) const;
+  [[nodiscard]] bool has_many_uses(NodeId id) const;
+  void count_use(NodeId argument);
   [[nodiscard]] NodeId append(const Node& node);
   void make_room(Index& index);
   void enter(Index& index, std::uint32_t node);
-  void enter_operations();
 
   std::vector<Node> nodes_;
-  Index leaves_, operations_;  // constants and variables; the others
-  std::uint32_t entered_ = 0;  // the operations among the nodes before this one are in their index
+  Index leaves_, operations_;  // constants and variables; operations whose arguments all have many uses
 };
 
 /// The arguments of a node, arity(op) of them: `for (const NodeId a : arguments(node))`.

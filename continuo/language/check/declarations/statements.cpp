@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -106,6 +107,24 @@ void Statements::walk(const std::vector<ast::Statement>& statements, Scope& scop
   for (const ast::Statement& statement : statements) walk_statement(statement, scope, inside);
 }
 
+/// Of a large family the first member, with the families in it, tells how much room the others take.
+void Statements::walk_family(const ast::Family& family, Scope& scope, bool inside) {
+  bool is_first_of_all = !inside;
+  const auto member = [&](std::size_t left) {
+    const std::size_t bases = declared_.bases.size(), conditions = declared_.conditions.size(),
+                      equations = declared_.equations.size();
+    walk(family.body, scope, true);
+    if (!std::exchange(is_first_of_all, false)) return;
+    const auto make_room = [&](auto& list, std::size_t before) {
+      list.reserve(list.size() + std::min(most_written_out, left * (list.size() - before)));
+    };
+    make_room(declared_.bases, bases);
+    make_room(declared_.conditions, conditions);
+    make_room(declared_.equations, equations);
+  };
+  if (!expressions_.indices.for_each_kept_index(family.index, family.range, scope, member)) lose(family.body);
+}
+
 void Statements::walk_mode(const ast::Mode& mode, Scope& scope) {
   const std::size_t index = find_mode(declared_, mode.name.text);
   scope.mode = static_cast<int>(index);
@@ -150,12 +169,11 @@ void Statements::walk_statement(const ast::Statement& statement, Scope& scope, b
             define_member(Definition::Kind::input, node.definition, *indices, node.definition.value, scope, &node);
           }
         } else if constexpr (std::is_same_v<T, ast::Equation>) {
-          if (orders_.see_equation(node, scope)) declared_.equations.push_back({&node, scope, span});
+          orders_.see_equation(node, scope, span);
         } else if constexpr (std::is_same_v<T, ast::Condition>) {
           orders_.see_condition(node, scope, span);
         } else if constexpr (std::is_same_v<T, ast::Family>) {
-          const auto member = [&] { walk(node.body, scope, true); };
-          if (!expressions_.indices.for_each_kept_index(node.index, node.range, scope, member)) lose(node.body);
+          walk_family(node, scope, inside);
         } else if constexpr (std::is_same_v<T, ast::Mode>) {
           walk_mode(node, scope);
         } else {

@@ -28,6 +28,7 @@ class Statements {
  private:
   void walk(const std::vector<ast::Statement>& statements, Scope& scope, bool inside);
   void walk_statement(const ast::Statement& statement, Scope& scope, bool inside);
+  void walk_family(const ast::Family& family, Scope& scope, bool inside);
   void walk_mode(const ast::Mode& mode, Scope& scope);
   void walk_other(const ast::Table& table, Scope& scope, Span span);
   void walk_other(const ast::Unknown& unknown, Scope& scope, Span span);

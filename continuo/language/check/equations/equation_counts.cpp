@@ -9,7 +9,7 @@
 
 namespace continuo::model::detail {
 
-std::vector<std::string> EquationCounts::highest_names(const std::vector<std::uint32_t>& bases) const {
+std::vector<std::string> EquationCounts::highest_names(std::span<const std::uint32_t> bases) const {
   std::vector<std::string> names;
   for (const std::uint32_t base : bases)
     names.push_back(with_primes(declared_.bases[base].name, declared_.bases[base].order));
@@ -45,14 +45,14 @@ void EquationCounts::report_empty_equation(ModeAtWork& work, std::size_t index,
 void EquationCounts::report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
                                     const std::vector<std::uint32_t>& open) const {
   const EquationAtWork& surplus = work.equations[members.back()];
-  const std::vector<std::string> names = highest_names(surplus.holds);
+  const std::vector<std::string> names = highest_names(work.held_by(surplus));
   const std::string where = declared_.has_modes() ? fmt::format(" in mode `{}`", declared_.modes[work.mode].name) : "";
   auto* said = report_.fail(
       "E231", surplus.span,
       fmt::format("{} {} one equation too many{}", listed(names), names.size() == 1 ? "has" : "have", where),
       "this one");
   if (!said) return;
-  for (const std::uint32_t base : surplus.holds) {
+  for (const std::uint32_t base : work.held_by(surplus)) {
     if (work.by[base] != npos) said->related.push_back({work.equations[work.by[base]].span, "determined here already"});
   }
   for (std::size_t i = 0; i + 1 < members.size() && !open.empty(); ++i) {

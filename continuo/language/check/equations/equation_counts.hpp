@@ -3,6 +3,7 @@
 // them.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ class EquationCounts {
   void report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
                       const std::vector<std::uint32_t>& open) const;
   void report_missing(const ModeAtWork& work) const;
-  [[nodiscard]] std::vector<std::string> highest_names(const std::vector<std::uint32_t>& bases) const;
+  [[nodiscard]] std::vector<std::string> highest_names(std::span<const std::uint32_t> bases) const;
 
  private:
   void report_without_equation(std::uint32_t base) const;

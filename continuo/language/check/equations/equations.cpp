@@ -21,28 +21,34 @@ SolvedEquations Equations::solve() {
   return std::move(made_);
 }
 
+/// The variable of this name in its mode.
+std::optional<std::size_t> Equations::base_of(const ast::Name& name, Scope& scope) const {
+  const auto indexed_name = expressions_.indices.name_of(name, scope);
+  const Symbol* symbol = indexed_name ? declared_.symbols.find(*indexed_name, scope.mode) : nullptr;
+  return symbol && symbol->kind == Symbol::Kind::base ? std::optional(symbol->index) : std::nullopt;
+}
+
 /// `x' = ...` where x' is the highest derivative of x: what it measures. Its node is not needed where the right side
 /// holds no highest derivative.
-std::optional<Value> Equations::explicit_left(const ast::Equation& equation, Scope& scope,
+std::optional<Value> Equations::explicit_left(const EquationText& equation, Scope& scope,
                                               std::vector<std::uint32_t>& held) const {
-  const auto* name = std::get_if<ast::Name>(&equation.left.node);
+  const auto* name = std::get_if<ast::Name>(&equation.text->left.node);
   if (!name || name->primes == 0 || !name->member.empty()) return std::nullopt;
-  const auto indexed_name = expressions_.indices.name_of(*name, scope);
-  const Symbol* symbol = indexed_name ? declared_.symbols.find(*indexed_name, scope.mode) : nullptr;
-  if (!symbol || symbol->kind != Symbol::Kind::base) return std::nullopt;
-  const Base& base = declared_.bases[symbol->index];
+  const auto index = equation.base != EquationText::no_base ? std::optional(equation.base) : base_of(*name, scope);
+  if (!index) return std::nullopt;
+  const Base& base = declared_.bases[*index];
   if (base.in_world || base.order != name->primes) return std::nullopt;
-  held.push_back(static_cast<std::uint32_t>(symbol->index));
-  return Value{.node = {}, .measured = expressions_.lookup.highest_unit(symbol->index, scope)};
+  held.push_back(static_cast<std::uint32_t>(*index));
+  return Value{.node = {}, .measured = expressions_.lookup.highest_unit(*index, scope)};
 }
 
 /// Both sides brought to one unit: left - right = 0, and what it holds.
-EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) {
+EquationAtWork Equations::read_equation(ModeAtWork& mode, const EquationText& equation) {
   Scope scope = equation.scope;
   on_left_.clear();
   held_.clear();
   scope.highest = &on_left_;
-  const std::optional<Value> highest = explicit_left(*equation.text, scope, on_left_);
+  const std::optional<Value> highest = explicit_left(equation, scope, on_left_);
   Term left{equation.text->left, highest ? *highest : expressions_.translator.translate(equation.text->left, scope)};
   scope.highest = &held_;
   Term right{equation.text->right, right_sides_.translate(expressions_, equation.text->right, scope)};
@@ -53,7 +59,9 @@ EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) {
   held_.insert(held_.end(), on_left_.begin(), on_left_.end());
   std::ranges::sort(held_);
   held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
-  work.holds.assign(held_.begin(), held_.end());
+  work.first_held = static_cast<std::uint32_t>(mode.held.size());
+  work.holds = static_cast<std::uint32_t>(held_.size());
+  mode.held.insert(mode.held.end(), held_.begin(), held_.end());
   if (!expressions_.operations.want_numbers(left, right) ||
       !expressions_.translator.align(left, right, equation.span, scope)) {
     work.bad = true;
@@ -73,9 +81,10 @@ void Equations::solve_mode(std::size_t mode) {
   work.solved.assign(declared_.bases.size(), NodeId{});
   work.by.assign(declared_.bases.size(), npos);
   work.equations.reserve(declared_.equations.size());
-  for (const Placed<ast::Equation>& equation : declared_.equations) {
+  work.held.reserve(declared_.equations.size());
+  for (const EquationText& equation : declared_.equations) {
     if (equation.scope.mode != Scope::no_mode && equation.scope.mode != static_cast<int>(mode)) continue;
-    work.equations.push_back(read_equation(equation));
+    work.equations.push_back(read_equation(work, equation));
   }
   for (std::size_t i = 0; i < declared_.bases.size(); ++i) {
     if (declared_.bases[i].in_world) work.by[i] = 0;  // moved by forces
@@ -97,7 +106,7 @@ void Equations::sort_out_algebraic(ModeAtWork& work) {
   const Layout& layout = model_.layout;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
-    if (!equation.holds.empty()) continue;
+    if (equation.holds > 0) continue;
     equation.used = true;
     if (equation.bad) continue;
     const auto variables = variables_of(graph_, equation.residual);
@@ -132,17 +141,18 @@ void Equations::solve_one_by_one(ModeAtWork& work) {
   std::vector<std::size_t> ready;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
-    equation.open = equation.holds.size();
+    equation.open = equation.holds;
     if (equation.open > 1) {
-      for (const std::uint32_t base : equation.holds) users[base].push_back(e);
+      for (const std::uint32_t base : work.held_by(equation)) users[base].push_back(e);
     }
     if (equation.open == 1) ready.push_back(e);
   }
   for (std::size_t next = 0; next < ready.size(); ++next) {
     EquationAtWork& equation = work.equations[ready[next]];
     if (equation.used) continue;
-    const auto open = std::ranges::find_if(equation.holds, [&](std::uint32_t b) { return work.by[b] == npos; });
-    if (open == equation.holds.end()) continue;  // another equation was quicker: one too many, reported below
+    const auto held = work.held_by(equation);
+    const auto open = std::ranges::find_if(held, [&](std::uint32_t b) { return work.by[b] == npos; });
+    if (open == held.end()) continue;  // another equation was quicker: one too many, reported below
     equation.used = true;
     work.by[*open] = ready[next];
     solve_for(work, equation, *open);
@@ -168,7 +178,7 @@ void Equations::solve_for(ModeAtWork& work, const EquationAtWork& equation, std:
     return;
   }
   Graph& g = graph_;
-  const NodeId residual = equation.holds.size() > 1 ? with_solved(work, equation.residual) : equation.residual;
+  const NodeId residual = equation.holds > 1 ? with_solved(work, equation.residual) : equation.residual;
   const auto linear = linear_in(g, residual, highest_begin + base);
   const std::string name = with_primes(declared_.bases[base].name, declared_.bases[base].order);
   if (!linear) {
@@ -206,12 +216,12 @@ void Equations::solve_coupled(ModeAtWork& work) {
     std::vector<std::uint32_t> open;
     group[first] = first;
     for (std::size_t at = 0; at < members.size(); ++at) {
-      for (const std::uint32_t base : work.equations[members[at]].holds) {
+      for (const std::uint32_t base : work.held_by(work.equations[members[at]])) {
         if (work.by[base] != npos || std::ranges::find(open, base) != open.end()) continue;
         open.push_back(base);
         for (std::size_t e = 0; e < work.equations.size(); ++e) {
           const EquationAtWork& other = work.equations[e];
-          if (other.used || group[e] != npos || !std::ranges::binary_search(other.holds, base)) continue;
+          if (other.used || group[e] != npos || !std::ranges::binary_search(work.held_by(other), base)) continue;
           group[e] = first;
           members.push_back(e);
         }

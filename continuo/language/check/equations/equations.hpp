@@ -33,9 +33,10 @@ class Equations {
   [[nodiscard]] SolvedEquations solve();
 
  private:
-  [[nodiscard]] std::optional<Value> explicit_left(const ast::Equation& equation, Scope& scope,
+  [[nodiscard]] std::optional<std::size_t> base_of(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] std::optional<Value> explicit_left(const EquationText& equation, Scope& scope,
                                                    std::vector<std::uint32_t>& held) const;
-  [[nodiscard]] EquationAtWork read_equation(const Placed<ast::Equation>& equation);
+  [[nodiscard]] EquationAtWork read_equation(ModeAtWork& mode, const EquationText& equation);
   void solve_mode(std::size_t mode);
   void sort_out_algebraic(ModeAtWork& work);
   void count_algebraic(std::size_t count) const;

@@ -43,7 +43,7 @@ void Actions::add(Block& to, const ast::Action& action, Scope& scope) const {
           if (after && *after < 1) report_.fail("E221", node.after->span, "`stop after` counts from 1");
           to.push_back({Stop{node.text, static_cast<std::size_t>(std::max(after.value_or(1), 1L))}, action.span});
         } else {
-          expressions_.indices.for_each_index(node.index, node.range, scope, [&] {
+          expressions_.indices.for_each_index(node.index, node.range, scope, [&](std::size_t) {
             for (const ast::Action& member : node.body) add(to, member, scope);
           });
         }

@@ -1,6 +1,7 @@
 // continuo/language/check/expressions/indices.hpp
 // Indices: the numbers in `u[i-1]`, `for i in 1..N` and the terms of a sum written out.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -31,8 +32,8 @@ class Indices {
   /// One more member or term; false after saying that there are too many.
   [[nodiscard]] bool count_written_out(Span span) const;
 
-  /// Calls body() with the index in the scope, for each of its values; stops where the model becomes too large.
-  /// False where the ends of the range are wrong.
+  /// Calls body with the index in the scope, for each of its values, and tells it how many values come after this one;
+  /// stops where the model becomes too large. False where the ends of the range are wrong.
   template <class Body>
   bool for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
     const auto ends = bounds(range, scope);
@@ -42,7 +43,7 @@ class Indices {
     scope.innermost = &mine;
     for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
       mine.value = i;
-      body();
+      body(static_cast<std::size_t>(ends->second - i));
     }
     scope.innermost = mine.outer;
     return true;
@@ -51,10 +52,10 @@ class Indices {
   /// The same where the body keeps the instance: every value of the index has an Index of its own, that stays.
   template <class Body>
   bool for_each_kept_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
-    return for_each_index(index, range, scope, [&] {
+    return for_each_index(index, range, scope, [&](std::size_t left) {
       const Index* const mine = scope.innermost;
       scope.innermost = keep(*mine);
-      body();
+      body(left);
       scope.innermost = mine;
     });
   }
@@ -62,7 +63,7 @@ class Indices {
   /// The terms of a sum that its condition lets through.
   template <class Body>
   void for_each_term(const ast::Sum& sum, Scope& scope, Body&& body) const {
-    for_each_index(sum.index, sum.range, scope, [&] {
+    for_each_index(sum.index, sum.range, scope, [&](std::size_t) {
       if (is_wanted(sum, scope)) body();
     });
   }

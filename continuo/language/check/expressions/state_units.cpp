@@ -5,13 +5,17 @@
 namespace continuo::model::detail {
 
 ConditionValues::Entry& ConditionValues::of(std::size_t index, std::size_t depth) {
+  if (index < entries_.size() && entries_[index].progress != Progress::untouched) return entries_[index];
+  return of(Expressions(workspace_), index, depth);
+}
+
+ConditionValues::Entry& ConditionValues::of(const Expressions& expressions, std::size_t index, std::size_t depth) {
   const auto& conditions = workspace_.declared.conditions;
   if (entries_.size() < conditions.size()) entries_.resize(conditions.size());
   Entry& entry = entries_[index];
   if (entry.progress != Progress::untouched) return entry;
   entry.progress = Progress::busy;
   const ast::Condition& text = *conditions[index].text;
-  const Expressions expressions(workspace_);
   Scope scope = conditions[index].scope;
   scope.samples = &entry.samples;
   scope.moment = &text.time;
@@ -23,7 +27,8 @@ ConditionValues::Entry& ConditionValues::of(std::size_t index, std::size_t depth
 }
 
 void ConditionValues::find_all() {
-  for (std::size_t i = 0; i < workspace_.declared.conditions.size(); ++i) of(i);
+  const Expressions expressions(workspace_);
+  for (std::size_t i = 0; i < workspace_.declared.conditions.size(); ++i) of(expressions, i, 0);
 }
 
 void StateUnits::reserve(std::size_t states) {

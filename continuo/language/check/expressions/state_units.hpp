@@ -9,6 +9,7 @@
 
 namespace continuo::model::detail {
 
+class Expressions;
 struct Workspace;
 
 class ConditionValues {
@@ -27,6 +28,8 @@ class ConditionValues {
   [[nodiscard]] const std::vector<Entry>& all() const { return entries_; }
 
  private:
+  Entry& of(const Expressions& expressions, std::size_t condition, std::size_t depth);
+
   Workspace& workspace_;
   std::vector<Entry> entries_;
   FamilyTranslator members_;

@@ -59,6 +59,14 @@ struct UnknownText {
   std::uint32_t variable = 0;
 };
 
+struct EquationText {
+  const ast::Equation* text;
+  Instance scope;
+  Span span;
+  std::size_t base = no_base;  // of which the left side is a derivative, where it is nothing else
+  static constexpr std::size_t no_base = static_cast<std::size_t>(-1);
+};
+
 struct ConditionText {
   const ast::Condition* text;
   Instance scope;
@@ -124,7 +132,7 @@ struct Declarations {
   std::vector<Definition> definitions;
   std::vector<std::size_t> parameters;  // definitions that are parameters, in the order of the text
   std::vector<Base> bases;
-  std::vector<Placed<ast::Equation>> equations;
+  std::vector<EquationText> equations;
   std::vector<ConditionText> conditions;
   std::vector<std::size_t> conditions_by_base;  // indices of these, those of each base together
   std::vector<Placed<ast::Guess>> guesses;

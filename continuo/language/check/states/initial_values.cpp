@@ -23,6 +23,7 @@ InitialValues::InitialValues(Expressions& expressions, std::vector<State>& state
 
 BoundaryProblem InitialValues::make() {
   bool all_at_start = true;
+  times_.reserve(declared_.conditions.size());
   const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
   for (std::size_t i = 0; i < declared_.conditions.size(); ++i) {
     const auto& time = times_.emplace_back(time_of(declared_.conditions[i]));

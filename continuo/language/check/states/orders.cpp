@@ -115,18 +115,19 @@ void StateOrders::see_primes(const ast::Expression& expression, Scope& scope) {
 }
 
 /// On the walk: what an equation determines comes in the order of the text.
-bool StateOrders::see_equation(const ast::Equation& equation, Scope& scope) {
-  if (const ast::Name* left = explicit_left(equation)) {
-    if (!left->member.empty()) {
-      refuse_equation_of_body(*left, report_);
-      return false;
-    }
-    see_base(*left, scope, left->primes);
+void StateOrders::see_equation(const ast::Equation& equation, Scope& scope, Span span) {
+  const ast::Name* left = explicit_left(equation);
+  if (left && !left->member.empty()) return refuse_equation_of_body(*left, report_);
+  std::size_t of = EquationText::no_base;
+  if (left) {
+    // A mode may have another meaning for a name, which is not looked for here.
+    const auto base = see_base(*left, scope, left->primes);
+    if (base && scope.mode == Scope::no_mode) of = *base;
   } else {
     see_primes(equation.left, scope);
     see_primes(equation.right, scope);
   }
-  return true;
+  declared_.equations.push_back({&equation, scope, span, of});
 }
 
 void StateOrders::see_condition(const ast::Condition& condition, Scope& scope, Span span) {
@@ -141,7 +142,7 @@ void StateOrders::see_condition(const ast::Condition& condition, Scope& scope, S
 
 void StateOrders::finish() {
   std::unordered_map<const ast::Equation*, bool> has_primes_on_right;  // the same for all members of a family
-  for (const Placed<ast::Equation>& equation : declared_.equations) {
+  for (const EquationText& equation : declared_.equations) {
     if (!explicit_left(*equation.text)) continue;
     const auto [known, is_new] = has_primes_on_right.try_emplace(equation.text, false);
     if (is_new) known->second = has_primes(equation.text->right);

@@ -7,14 +7,13 @@
 
 namespace continuo::model::detail {
 
-/// Fills Declarations::bases and ::conditions in the order of the text.
+/// Fills Declarations::bases, ::equations and ::conditions in the order of the text.
 class StateOrders {
  public:
   StateOrders(Declarations& declared, Expressions& expressions)
       : declared_(declared), expressions_(expressions), report_(expressions.report) {}
 
-  /// False where the equation is refused.
-  [[nodiscard]] bool see_equation(const ast::Equation& equation, Scope& scope);
+  void see_equation(const ast::Equation& equation, Scope& scope, Span span);
   void see_condition(const ast::Condition& condition, Scope& scope, Span span);
   /// After the last equation: primes on the right of explicit ones may raise an order, and what has conditions only
   /// has the order that these ask for.

@@ -58,7 +58,7 @@ void WorldDeclarations::declare_items(const std::vector<ast::WorldItem>& items, 
   for (const ast::WorldItem& item : items) {
     if (const auto* family = std::get_if<ast::WorldFamily>(&item.node)) {
       expressions_.indices.for_each_kept_index(family->index, family->range, scope,
-                                               [&] { declare_items(family->body, scope); });
+                                               [&](std::size_t) { declare_items(family->body, scope); });
       continue;
     }
     if (const auto* body = std::get_if<ast::WorldBody>(&item.node)) {
