@@ -112,6 +112,8 @@ class Writer {
         return "box " + point({shape.size.begin(), shape.size.begin() + dimension}, variables);
       case ShapeDescription::Kind::hull:
         return fmt::format("hull of {} points", shape.corners.size());
+      case ShapeDescription::Kind::compound:
+        return fmt::format("compound of {} part{}", shape.parts.size(), shape.parts.size() == 1 ? "" : "s");
       case ShapeDescription::Kind::ball:
         break;
     }

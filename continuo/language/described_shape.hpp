@@ -5,6 +5,8 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include <continuo/language/world.hpp>
@@ -24,6 +26,12 @@ namespace continuo::model {
     }
     case ShapeDescription::Kind::hull:
       return {shape.rounding};
+    case ShapeDescription::Kind::compound: {
+      std::vector<NodeId> nodes;
+      for (const PartDescription& part : shape.parts)
+        for (const NodeId node : shape_nodes(part.shape, dimension)) nodes.push_back(node);
+      return nodes;
+    }
     case ShapeDescription::Kind::ball:
       break;
   }
@@ -31,6 +39,25 @@ namespace continuo::model {
 }
 
 /// The shape, from the values of its expressions in that order.
+template <int Dim>
+[[nodiscard]] continuo::Shape<double, Dim> described_shape(const ShapeDescription& shape,
+                                                           std::span<const double> values);
+
+/// A part of a compound with this shape, which is none.
+template <int Dim>
+[[nodiscard]] ShapePart<double, Dim> described_part(const PartDescription& of,
+                                                    const continuo::Shape<double, Dim>& shape) {
+  ShapePart<double, Dim> part;
+  std::visit(
+      [&](const auto& convex) {
+        if constexpr (!std::is_same_v<decltype(convex), const Compound<double, Dim>&>) part.shape = convex;
+      },
+      shape);
+  for (std::size_t axis = 0; axis < part.position.size(); ++axis) part.position[axis] = of.position[axis];
+  for (std::size_t k = 0; k < part.orientation.size(); ++k) part.orientation[k] = of.orientation[k];
+  return part;
+}
+
 template <int Dim>
 [[nodiscard]] continuo::Shape<double, Dim> described_shape(const ShapeDescription& shape,
                                                            std::span<const double> values) {
@@ -50,6 +77,15 @@ template <int Dim>
         for (std::size_t axis = 0; axis < point.size(); ++axis) point[axis] = corner[axis];
       }
       return hull;
+    }
+    case ShapeDescription::Kind::compound: {
+      continuo::Compound<double, Dim> compound;
+      for (const PartDescription& part : shape.parts) {
+        const std::size_t count = shape_nodes(part.shape, Dim).size();
+        compound.parts.push_back(described_part<Dim>(part, described_shape<Dim>(part.shape, values.first(count))));
+        values = values.subspan(count);
+      }
+      return compound;
     }
     case ShapeDescription::Kind::ball:
       break;

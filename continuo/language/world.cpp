@@ -1,5 +1,5 @@
 // continuo/language/world.cpp
-// Names of what a world and its joints measure, and of the methods that move it.
+// Names of what a world and its joints measure.
 #include <algorithm>
 
 #include <continuo/language/world.hpp>
@@ -11,11 +11,6 @@ std::vector<std::string> world_measures(int dimension) {
   if (dimension == 3) names.emplace_back("momentum_z");
   names.emplace_back("collisions");
   return names;
-}
-
-std::vector<std::string> world_integrators() {
-  return {"semi_implicit_euler", "symplectic_euler_position_first", "implicit_euler", "central_difference",
-          "explicit_euler"};
 }
 
 std::vector<std::string> joint_measures(std::string_view kind, int dimension, bool is_named, bool has_motor) {
@@ -33,21 +28,10 @@ std::vector<std::string> joint_measures(std::string_view kind, int dimension, bo
   return names;
 }
 
-bool WorldDescription::needs_fast_motion() const {
+bool WorldDescription::is_rigid() const {
   return !joints.empty() || std::ranges::any_of(bodies, [](const BodyDescription& body) {
-    return body.driven || body.shape.kind != ShapeDescription::Kind::ball;
+    return body.driven || body.shape.kind != ShapeDescription::Kind::ball || body.traits.any();
   });
-}
-
-std::vector<std::string> world_methods() {
-  std::vector<std::string> names{"exact", "dop853", "rk4", "fast"};
-  for (const std::string& integrator : world_integrators()) names.push_back(integrator);
-  return names;
-}
-
-std::vector<std::string> world_methods(const WorldDescription& world) {
-  if (world.needs_fast_motion()) return {"fast", "semi_implicit_euler"};
-  return world_methods();
 }
 
 double collisions_of(const WorldDescription& world, std::span<const double> state) {

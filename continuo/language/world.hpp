@@ -37,16 +37,37 @@ struct CombineRuleDescription {
   friend bool operator==(const CombineRuleDescription&, const CombineRuleDescription&) = default;
 };
 
+struct PartDescription;
+
 /// The shape of a body in a frame of its own, as in shapes/shape.hpp. What another kind has is not valid.
 struct ShapeDescription {
   /// What shapes there are.
-  enum class Kind : std::uint8_t { ball, capsule, box, hull };
+  enum class Kind : std::uint8_t { ball, capsule, box, hull, compound };
   Kind kind = Kind::ball;
   NodeId radius;                                 // of a ball, and of the ends of a capsule
   NodeId length;                                 // of a capsule
   NodePoint size;                                // of a box
   NodeId rounding;                               // of a box or a hull
   std::vector<std::array<double, 3>> corners{};  // of a hull: numbers, so that what they depend on decides the model
+  std::vector<PartDescription> parts;            // of a compound: their numbers are constants of the graph
+};
+
+/// A convex part of a compound, where it stands in the frame of the compound.
+struct PartDescription {
+  ShapeDescription shape{};                         // no compound
+  std::array<double, 3> position{};                 // of its origin
+  std::array<double, 4> orientation{1.0, 0, 0, 0};  // a unit quaternion; in the plane the first number is an angle
+};
+
+/// What few bodies need, as in bodies/body.hpp. What is not valid is left to the body.
+struct TraitsDescription {
+  bool sensor = false;                          // has contact events, but pushes nothing
+  std::uint8_t locked = 0;                      // bits: x, y, z, the turns about x, y, z
+  NodeId gravity_scale, damping, spin_damping;  // of gravity; of the velocity and the spin, per time
+  /// Whether it has any.
+  [[nodiscard]] bool any() const {
+    return sensor || locked != 0 || gravity_scale.valid() || damping.valid() || spin_damping.valid();
+  }
 };
 
 /// Where it is and how it moves at the start are the initial values of its states.
@@ -58,6 +79,7 @@ struct BodyDescription {
   NodeId density;       // not valid where a mass is given
   bool fixed = false;   // nothing moves it
   bool driven = false;  // fixed, and moves with its velocity and spin
+  TraitsDescription traits{};
   std::uint32_t group = 0;
   MaterialDescription material;
   std::size_t first_state = 0;  // of its body_states(dimension) in Model::states
@@ -137,8 +159,10 @@ struct WorldDescription {
   std::size_t first_measure = 0;
   Span span;
 
-  /// Whether only the fast motion moves it: for its joints, or for bodies that are driven or are not balls.
-  [[nodiscard]] bool needs_fast_motion() const;
+  /// Whether it has joints, or bodies that are not balls, are driven or have traits.
+  [[nodiscard]] bool is_rigid() const;
+  /// Whether it is rigid and moved by the fast motion: then the exact one is no reference for it.
+  [[nodiscard]] bool is_moved_fast() const { return mode.fast && is_rigid(); }
 
   /// The number of states of all bodies.
   [[nodiscard]] std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
@@ -158,14 +182,5 @@ struct WorldDescription {
 
 /// So many there were until the model was in this state.
 [[nodiscard]] double collisions_of(const WorldDescription& world, std::span<const double> state);
-
-/// What can stand behind `integrator` in `mode fast`.
-[[nodiscard]] std::vector<std::string> world_integrators();
-
-/// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
-/// the integrator that the world names, or by the name of one.
-[[nodiscard]] std::vector<std::string> world_methods();
-/// Those of them that move this world.
-[[nodiscard]] std::vector<std::string> world_methods(const WorldDescription& world);
 
 }  // namespace continuo::model

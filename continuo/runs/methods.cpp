@@ -1,7 +1,7 @@
 // Methods by name for models of each kind.
 #include <algorithm>
 
-#include <continuo/language/world.hpp>
+#include <continuo/language/world_methods.hpp>
 #include <continuo/runs/methods.hpp>
 #include <continuo/solve/catalogue.hpp>
 
@@ -11,7 +11,7 @@ std::vector<Method> methods_for(const model::Model& model) {
   const Kind kind = kind_of(model);
   std::vector<Method> methods;
   if (kind.solver == Solver::world) {
-    for (const std::string& name : model::world_methods(*model.world))
+    for (const std::string& name : model::world_methods(*model.world, model))
       methods.push_back({.name = name, .title = name, .chooses_steps = has_no_step(kind, name)});
     return methods;
   }
@@ -48,7 +48,7 @@ int order_of_fixed_steps(const model::Model& model, std::string_view method) {
 }
 
 std::string_view reference_method(const model::Model& model, bool stiff) {
-  if (kind_of(model).solver == Solver::world) return model.world->needs_fast_motion() ? "fast" : "exact";
+  if (kind_of(model).solver == Solver::world) return model.world->is_moved_fast() ? "fast" : "exact";
   if (!stiff && !model.needs_dae_solver()) return "verner9";
   return find_method("radau") != nullptr ? "radau" : "bdf";
 }

@@ -80,7 +80,8 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
   for (const NodeId node : {text.attraction, text.softening, text.opening, text.drag_linear, text.drag_quadratic})
     values.want(node);
   for (const auto& body : text.bodies)
-    values.want(model::shape_nodes(body.shape, Dim)), values.want(body.mass), values.want(body.material);
+    values.want(model::shape_nodes(body.shape, Dim)), values.want(body.mass), values.want(body.material),
+        values.want(body.traits.gravity_scale), values.want(body.traits.damping), values.want(body.traits.spin_damping);
   for (const auto& wall : text.walls)
     values.want(wall.normal, axes), values.want(wall.offset), values.want(wall.material);
   for (const auto& spring : text.springs) {
@@ -110,7 +111,13 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     definition.mass = values.next();
     definition.material = values.next_material();
     definition.fixed = body.fixed;
+    const double gravity_scale = values.next(), damping = values.next(), spin_damping = values.next();
+    if (body.traits.gravity_scale.valid()) definition.traits.gravity_scale = gravity_scale;
+    if (body.traits.damping.valid()) definition.traits.damping = damping;
+    if (body.traits.spin_damping.valid()) definition.traits.spin_damping = spin_damping;
     definition.traits.is_driven = body.driven;
+    definition.traits.is_sensor = body.traits.sensor;
+    definition.traits.locked = static_cast<Locked>(body.traits.locked);
     definition.group = body.group;
     for (std::size_t axis = 0; axis < axes; ++axis) {
       definition.position[axis] = *state++;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <continuo/language/world.hpp>
+#include <continuo/language/world_methods.hpp>
 #include <continuo/simulation/drive/planner.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 #include <continuo/worlds/plan_world.hpp>
@@ -27,12 +27,20 @@ std::optional<double> number(const model::Model& model, NodeId node, const Plan&
 }
 
 /// Sets the method: that of the world's mode, or the one that the experiment names instead.
-bool set_method(Planner& planner, const model::WorldDescription& world, const Experiment& experiment) {
+bool set_method(Planner& planner, const model::Model& model, const Experiment& experiment,
+                std::vector<model::Diagnostic>& problems) {
+  const model::WorldDescription& world = *model.world;
   Plan& plan = planner.plan();
   plan.method = experiment.method.value_or(world.mode.fast ? "fast" : "exact");
   plan.reason = experiment.method ? "it was asked for" : "the world names it";
-  const std::vector<std::string> names = model::world_methods(world), all = model::world_methods();
+  const std::vector<std::string> names = model::world_methods(world, model), all = model::world_methods();
   if (std::ranges::find(names, plan.method) != names.end()) return true;
+  const std::vector<model::ExactRefusal> refusals = model::exact_refusals(world, model);
+  if ((plan.method == "exact" || plan.method == "dop853") && !refusals.empty()) {
+    problems.push_back(model::error("E334", refusals.front().span, refusals.front().message, "",
+                                    fmt::format("there are {}", fmt::join(names, " and "))));
+    return false;
+  }
   if (std::ranges::find(all, plan.method) != all.end()) {
     planner.fail("E334", fmt::format("`{}` moves balls without joints, and this world has more", plan.method),
                  fmt::format("there are {}", fmt::join(names, " and ")), true);
@@ -75,11 +83,12 @@ void set_step(Planner& planner, const model::Model& model, const Experiment& exp
                  experiment.step.has_value());
 }
 
-void set_motion(Planner& planner, const model::Model& model, const Experiment& experiment) {
+void set_motion(Planner& planner, const model::Model& model, const Experiment& experiment,
+                std::vector<model::Diagnostic>& problems) {
   if (experiment.max_step || experiment.max_steps)
     return planner.fail("E333", "the steps of a world are those of its mode", "leave out --max-step and --max-steps",
                         true);
-  if (!set_method(planner, *model.world, experiment)) return;
+  if (!set_method(planner, model, experiment, problems)) return;
   if (set_tolerance(planner, model, experiment)) set_step(planner, model, experiment);
 }
 
@@ -98,7 +107,7 @@ std::optional<Plan> plan_world(const model::Model& model, const Experiment& expe
                                std::vector<model::Diagnostic>& problems) {
   Planner planner(model, experiment, problems);
   planner.begin();
-  set_motion(planner, model, experiment);
+  set_motion(planner, model, experiment, problems);
   if (!model.run.output) set_usual_output(planner.plan());
   return planner.finish();
 }

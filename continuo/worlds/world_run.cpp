@@ -2,6 +2,7 @@
 // Implements WorldRun for both dimensions, by the exact or the fast motion.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -167,6 +168,7 @@ class Moving final : public WorldRun {
     if (!body_and_target) return drop_hand();
     const auto& [body, target] = *body_and_target;
     if (world_.is_fixed(body)) return;
+    if (exact_) return pull_by_spring(body, vector_of<Dim>(target));
     Joint<double, Dim>* joint = world_.find(hand_);
     if (joint && joint->b != world_.handle(body)) {
       drop_hand();
@@ -238,7 +240,7 @@ class Moving final : public WorldRun {
     World<double, Dim> found = world_;
     if (Status status = continuo::restore(saved.bodies, found); !status) return status;
     if (found.size() != world_.size() || found.walls().size() != world_.walls().size() ||
-        found.springs.size() != world_.springs.size() || found.joint_count() < world_.joint_count())
+        found.springs.size() < model().world->springs.size() || found.joint_count() < world_.joint_count())
       return invalid_input("it has other bodies, walls, springs or joints");
     if (found.time != saved.time) return invalid_input("its bodies are at another time");
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
@@ -298,18 +300,34 @@ class Moving final : public WorldRun {
   /// Strong enough to lift ten times all bodies that move, and to bring this one across itself in a tenth of a unit of
   /// time: a hand that is stronger tears at joints.
   JointDefinition<double, Dim> definition_of_hand(std::size_t body) const {
-    constexpr double hertz = 5, damping = 1;
+    constexpr double damping = 1;
     double mass = 0;
     for (std::size_t i = 0; i < world_.size(); ++i) mass += world_.is_fixed(i) ? 0 : world_.mass[i];
     const double acceleration = 10 * length(world_.gravity) + 100 * world_.radius[body];
     return {.kind = JointKind::pull,
             .b = world_.handle(body),
             .anchor = world_.position[body],
-            .spring = JointSpring<double>{.hertz = hertz, .damping = damping},
+            .spring = JointSpring<double>{.hertz = hertz_of_hand, .damping = damping},
             .breaks_at = mass * acceleration};
+  }
+  /// The exact motion, which knows no joints that pull, has a spring of that frequency and a damping ratio of 1.
+  void pull_by_spring(std::size_t body, const V& target) {
+    const double rate = 2 * std::numbers::pi * hertz_of_hand, mass = world_.mass[body];
+    drop_hand();
+    world_.springs.push_back({.a = world_.handle(body),
+                              .b = target,
+                              .rest_length = 0,
+                              .stiffness = mass * rate * rate,
+                              .damping = 2 * mass * rate});
+    renew();
   }
   /// Also that of a snapshot, which may have been taken while a hand pulled.
   void drop_hand() {
+    const std::size_t of_model = model().world->springs.size();
+    if (world_.springs.size() > of_model) {
+      world_.springs.resize(of_model);
+      renew();
+    }
     for (const JointHandle handle : world_.joints())
       if (std::ranges::find(joints_, handle) == joints_.end()) world_.remove_joint(handle);
     hand_ = {};
@@ -338,7 +356,10 @@ class Moving final : public WorldRun {
           .tolerance = options_.tolerance, .contact_events = options_.most_contacts, .interrupt = options_.interrupt};
       if (mode.contact_time.valid()) options.contact_time = evaluate(model(), mode.contact_time, variables_);
       if (options_.method == "rk4") options.step = options_.step;
-      if (coupled_.is_empty()) {
+      // The exact motion of shapes and joints has no companions; what acts without equations are laws of the world.
+      const bool has_laws = model().world->is_rigid() && companions_.state.empty();
+      if (has_laws) set_laws();
+      if (has_laws || coupled_.is_empty()) {
         exact_.emplace(world_, options);
       } else {
         exact_.emplace(world_, options, companions_);
@@ -352,6 +373,11 @@ class Moving final : public WorldRun {
     options.threads = mode.threads;
     options.contact_events = options_.most_contacts;
     options.integrator = *integrator_named(options_.method == "fast" ? mode.integrator : options_.method);
+    set_laws();
+    fast_.emplace(world_, options);
+  }
+  /// Forces and torques of the model; in the exact motion also the force of a hand.
+  void set_laws() {
     world_.force_laws.clear(), world_.torque_laws.clear();
     if (coupled_.has_forces())
       world_.force_laws.push_back(
@@ -361,7 +387,6 @@ class Moving final : public WorldRun {
       world_.torque_laws.push_back(
           [this](const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
                  std::span<Spin<double, Dim>> torque) { coupled_(world, t, at, companions_.state, {}, torque, {}); });
-    fast_.emplace(world_, options);
   }
   void renew() {
     if (exact_) exact_->refresh();
@@ -435,6 +460,7 @@ class Moving final : public WorldRun {
   CoupledEquations<Dim> coupled_;
   MotorSpeeds motors_;
   World<double, Dim> world_;
+  static constexpr double hertz_of_hand = 5;
   JointHandle hand_{};                                            // that pulls
   std::vector<JointHandle> joints_;                               // of the model
   std::vector<std::pair<std::size_t, double>> starts_elsewhere_;  // states of bodies

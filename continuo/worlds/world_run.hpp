@@ -94,7 +94,7 @@ struct Contact {
 
 /// How a world is moved.
 struct WorldOptions {
-  std::string method = "exact";                  // one of model::world_methods()
+  std::string method = "exact";                  // one of model::world_methods(), in language/world_methods.hpp
   double step = 0;                               // of methods with steps
   double tolerance = 1e-10;                      // of paths under forces, exact
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends as `interrupted`

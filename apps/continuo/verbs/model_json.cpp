@@ -117,6 +117,8 @@ class ModelWriter {
         return "box";
       case model::ShapeDescription::Kind::hull:
         return "hull";
+      case model::ShapeDescription::Kind::compound:
+        return "compound";
       case model::ShapeDescription::Kind::ball:
         break;
     }

@@ -83,6 +83,12 @@ struct WorldJoint {
   WorldAttributes attributes;
 };
 
+/// `part of hammer at (0.5, 0) box (0.2, 0.5)`: joined rigidly to the body, in its frame.
+struct WorldPart {
+  Name of;
+  WorldAttributes attributes;
+};
+
 /// `fix cloth[1], cloth[8]`.
 struct WorldFix {
   std::vector<Name> bodies;
@@ -104,7 +110,7 @@ struct WorldFamily {
 
 struct WorldItem {
   std::variant<WorldSetting, WorldWall, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings, WorldJoint,
-               WorldFix, WorldIgnore, WorldFamily>
+               WorldPart, WorldFix, WorldIgnore, WorldFamily>
       node;
   Span span;
 };

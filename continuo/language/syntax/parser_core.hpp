@@ -242,6 +242,7 @@ class Parser {
   [[nodiscard]] ast::WorldSpring parse_world_spring();
   [[nodiscard]] ast::WorldSprings parse_world_springs();
   [[nodiscard]] ast::WorldJoint parse_world_joint(ast::Identifier kind);
+  [[nodiscard]] ast::WorldPart parse_world_part();
   [[nodiscard]] ast::WorldFix parse_world_fix();
   [[nodiscard]] ast::WorldIgnore parse_world_ignore();
   [[nodiscard]] ast::WorldFamily parse_world_family();

@@ -16,10 +16,10 @@ namespace {
 using ast::Expression;
 using Word = std::string_view;
 
-constexpr std::array<Word, 24> item_words = {"dimension", "gravity", "material",  "combine", "attraction", "drag",
-                                             "mode",      "wall",    "container", "body",    "bodies",     "spring",
-                                             "springs",   "hinge",   "slider",    "weld",    "ball",       "distance",
-                                             "rope",      "wheel",   "universal", "gear",    "fix",        "ignore"};
+constexpr std::array<Word, 25> item_words = {
+    "dimension", "gravity", "material",  "combine", "attraction", "drag",   "mode",  "wall", "container",
+    "body",      "bodies",  "spring",    "springs", "hinge",      "slider", "weld",  "ball", "distance",
+    "rope",      "wheel",   "universal", "gear",    "part",       "fix",    "ignore"};
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
@@ -28,9 +28,12 @@ constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
 constexpr std::array<Word, 7> fast_words = {"step",  "substeps",    "integrator", "threads",
                                             "hertz", "sleep_after", "sleep_speed"};
-constexpr std::array<Word, 18> body_words = {"at",          "velocity", "angle",   "axis",     "spin",  "radius",
-                                             "box",         "capsule",  "hull",    "rounding", "mass",  "density",
-                                             "restitution", "friction", "rolling", "group",    "fixed", "driven"};
+constexpr std::array<Word, 29> body_words = {
+    "at",       "velocity",    "angle",         "axis",          "spin",         "radius",       "box",      "capsule",
+    "hull",     "rounding",    "mass",          "density",       "restitution",  "friction",     "rolling",  "group",
+    "fixed",    "driven",      "sensor",        "gravity_scale", "damping",      "spin_damping", "locked_x", "locked_y",
+    "locked_z", "locked_turn", "locked_turn_x", "locked_turn_y", "locked_turn_z"};
+constexpr std::array<Word, 8> part_words = {"at", "axis", "angle", "radius", "box", "capsule", "hull", "rounding"};
 constexpr std::array<Word, 19> grid_words = {
     "from",     "spacing", "jitter", "seed",    "velocity", "angle", "spin",        "radius",   "box",    "capsule",
     "rounding", "axis",    "mass",   "density", "group",    "fixed", "restitution", "friction", "rolling"};
@@ -47,7 +50,9 @@ bool is_one_of(Word word, std::span<const Word> words) {
 }
 
 bool is_flag(Word word) {
-  constexpr std::array<Word, 5> flags = {"fixed", "driven", "diagonal", "thin", "collide"};
+  constexpr std::array<Word, 13> flags = {"fixed",         "driven",        "diagonal",     "thin",     "collide",
+                                          "sensor",        "locked_x",      "locked_y",     "locked_z", "locked_turn",
+                                          "locked_turn_x", "locked_turn_y", "locked_turn_z"};
   return is_one_of(word, flags);
 }
 bool takes_point(Word word) {
@@ -153,6 +158,8 @@ ast::WorldItem Parser::parse_world_item() {
     item.node = parse_world_springs();
   } else if (is_one_of(word, joint_kinds)) {
     item.node = parse_world_joint(std::move(name));
+  } else if (word == "part") {
+    item.node = parse_world_part();
   } else if (word == "fix") {
     item.node = parse_world_fix();
   } else if (word == "ignore") {
@@ -270,6 +277,14 @@ ast::WorldSprings Parser::parse_world_springs() {
   springs.pattern = parse_identifier("the name of bodies that a pattern made");
   springs.attributes = parse_world_attributes("a spring", springs_words);
   return springs;
+}
+
+ast::WorldPart Parser::parse_world_part() {
+  ast::WorldPart part;
+  expect_word("of", "`of` and the name of a body, as in part of hammer at (0.5, 0) box (0.2, 0.5)");
+  part.of = parse_name("the name of a body");
+  part.attributes = parse_world_attributes("a part", part_words);
+  return part;
 }
 
 ast::WorldFix Parser::parse_world_fix() {

@@ -202,8 +202,8 @@ greater than zero.)"},
     Code{"E264", "the method does not fit the model",
          R"(velocity_verlet and central_difference are for x'' = a(t, x): every state must be a position or its
 velocity, and both in units that fit (x in m, x' in m/s, time in s). The other methods are general. The method of a
-world of bodies is its mode, exact or fast; bodies that are driven or are not balls, and joints, are moved by the fast
-mode with its usual integrator.)"},
+world of bodies is its mode, exact or fast. Of joints, and of bodies that are driven or are not balls, the exact mode
+refuses what it does not know, and the fast mode has its usual integrator.)"},
     Code{"E265", "there is nothing to drag",
          R"(`drag` lets the mouse move the states that a point depends on: ball (x, y) drag, or for a pendulum
 ball (l*sin(theta), -l*cos(theta)) drag. A point that depends on no state cannot be dragged.)"},

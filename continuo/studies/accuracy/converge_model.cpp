@@ -84,7 +84,7 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
 
 std::string name_of_reference(const model::Model& model) {
   if (runs::kind_of(model).solver != runs::Solver::world) return "a strict run";
-  return model.world->needs_fast_motion() ? "the fast motion in steps of a sixteenth" : "the exact motion";
+  return model.world->is_moved_fast() ? "the fast motion in steps of a sixteenth" : "the exact motion";
 }
 
 Result<Convergence> compare_runs(const std::shared_ptr<const model::ModelProgram>& program,

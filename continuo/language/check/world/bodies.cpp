@@ -15,6 +15,7 @@
 namespace continuo::model::detail {
 
 void Bodies::make() {
+  find_parts();
   for (const BodyText& body : text_.bodies) make_body(body);
   for (const PatternText& pattern : text_.patterns) make_pattern(pattern);
 }
@@ -150,8 +151,10 @@ void Bodies::make_body(const BodyText& body) {
     return;
   }
   const ast::WorldAttributes& attributes = body.text->attributes;
-  const MadeShape shape = shapes_.make(attributes, scope);
+  const auto parts = parts_.find(number);
+  const MadeShape shape = parts == parts_.end() ? shapes_.make(attributes, scope) : make_compound(body, parts->second);
   BodyDescription made = description_of(attributes, shape, scope);
+  made.traits = traits_of(attributes, scope);
   made.name = body.name;
   made.first_state = expressions_.workspace.declared.bases[body.base].first;
   made.span = body.span;
@@ -160,12 +163,12 @@ void Bodies::make_body(const BodyText& body) {
   NodePoint position{zero, zero, zero};
   if (const ast::Expression* at = attribute(attributes, "at")) {
     position = numbers_.point(*at, scope, work_.length, "a position");
-  } else if (shape.shape.kind != ShapeDescription::Kind::hull) {
+  } else if (shape.shape.kind != ShapeDescription::Kind::hull && shape.shape.kind != ShapeDescription::Kind::compound) {
     report_.fail("E225", body.span, fmt::format("where is `{}`?", body.name), {}, "add at (0, 0)");
   }
   const Turn turn = turn_of(attributes, scope);
   if (shape.centre != std::array<double, 3>{} &&
-      turn.orientation[0].valid()) {  // the corners of a hull are where `at` is the origin
+      turn.orientation[0].valid()) {  // the corners of a hull, and parts, are where `at` is the origin
     const NodePoint centre = turned(shape.centre, turn);
     for (std::size_t axis = 0; axis < text_.axes() && position[axis].valid() && centre[axis].valid(); ++axis)
       position[axis] = graph_.add(position[axis], centre[axis]);

@@ -2,6 +2,8 @@
 // Bodies one by one and by pattern: what they are and where they begin.
 #pragma once
 #include <array>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include <continuo/language/check/expressions/expressions.hpp>
@@ -34,6 +36,13 @@ class Bodies {
 
   void make_body(const BodyText& body);
   void make_pattern(const PatternText& pattern);
+  void find_parts();  // compounds.cpp
+  [[nodiscard]] MadeShape make_compound(const BodyText& body, const std::vector<const Placed<ast::WorldItem>*>& parts);
+  template <int Dim>
+  [[nodiscard]] MadeShape measured_compound(ShapeDescription shape, Span span);
+  [[nodiscard]] std::optional<PartDescription> part_of(const ast::WorldAttributes& attributes, Scope& scope,
+                                                       bool has_place);
+  [[nodiscard]] TraitsDescription traits_of(const ast::WorldAttributes& attributes, Scope& scope);
   [[nodiscard]] BodyDescription description_of(const ast::WorldAttributes& attributes, const MadeShape& made,
                                                Scope& scope);
   [[nodiscard]] std::uint32_t group_of(const ast::WorldAttributes& attributes);
@@ -54,6 +63,7 @@ class Bodies {
   std::vector<State>& states_;
   WorldNumbers numbers_;
   BodyShapes shapes_;
+  std::map<std::size_t, std::vector<const Placed<ast::WorldItem>*>> parts_;  // of bodies that are compounds
 };
 
 }  // namespace continuo::model::detail

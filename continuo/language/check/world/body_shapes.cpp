@@ -33,7 +33,7 @@ bool BodyShapes::is_one_shape(const ast::WorldAttributes& attributes) const {
     if (std::ranges::find(shape_words, one.name.text) == shape_words.end()) continue;
     if (!first.empty()) {
       report_.fail("E225", one.name.span, "a body has one shape", fmt::format("it is a {} already", first),
-                   "leave one of them out; bodies that a `weld` connects move as one");
+                   "leave one of them out, or write it as a part: part of NAME at (1, 0) box (1, 1)");
       return false;
     }
     first = one.name.text;

@@ -9,6 +9,7 @@
 
 #include <continuo/language/check/world/finish_world.hpp>
 #include <continuo/language/check/world/start_shapes.hpp>
+#include <continuo/language/world_methods.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -131,12 +132,20 @@ void look_at_start(const Model& model, const WorldDescription& made, Report& rep
   look_at_walls(model, made, places, variables, report);
 }
 
+/// E264: what the exact motion refuses where the model names it.
+void look_at_exact_mode(const Model& model, const WorldDescription& made, Report& report) {
+  if (made.mode.fast) return;
+  for (const ExactRefusal& refusal : exact_refusals(made, model))
+    report.fail("E264", refusal.span, refusal.message, {}, "write mode fast step 1/60, or leave this out");
+}
+
 }  // namespace
 
 std::shared_ptr<const WorldDescription> finish_world(const WorldText& text, WorldAtWork world, const Model& model,
                                                      Report& report) {
   look_at_groups(text, world, report);
   if (!text.text) return nullptr;
+  look_at_exact_mode(model, world.made, report);
   if (report.errors() == 0) look_at_start(model, world.made, report);
   return std::make_shared<const WorldDescription>(std::move(world.made));
 }

@@ -82,23 +82,26 @@ void StartShapes::place(const Model& model, const WorldDescription& made, std::s
   }
   const std::vector<double> values = evaluate(model, nodes, variables);
   std::span<const double> left = values;
-  std::vector<PlacedCore<Dim>> cores;
+  std::vector<PlacedCores<Dim>> cores;
   for (std::size_t i = 0; i < made.bodies.size(); ++i) {
     const BodyDescription& body = made.bodies[i];
     const std::size_t count = shape_nodes(body.shape, Dim).size();
     const auto solid = continuo::solid<double, Dim>(described_shape<Dim>(body.shape, left.first(count)));
     left = left.subspan(count);
-    PlacedCore<Dim>& placed = cores.emplace_back();
+    PlacedCores<Dim>& placed = cores.emplace_back();
     if (!solid) continue;
-    const Convex<double, Dim>& convex = solid->parts.front().convex;
     const double* state = variables.data() + model.layout.states + body.first_state + 2 * Dim;
     Orientation<double, Dim> orientation;
     for (std::size_t k = 0; k < orientation.size(); ++k) orientation[k] = state[k];
     Pose<double, Dim> pose{.centre = {}, .axes = rotation(orientation)};
     for (std::size_t k = 0; k < pose.centre.size(); ++k) pose.centre[k] = centre[i][k];
-    placed.core.edges = convex.core.edges;
-    placed.rounding = convex.rounding;
-    for (const V<Dim>& corner : convex.core.corners) placed.core.corners.push_back(pose.place(corner));
+    for (const SolidPart<double, Dim>& part : solid->parts) {
+      PlacedCore<Dim>& core = placed.emplace_back();
+      core.core.edges = part.convex.core.edges;
+      core.rounding = part.convex.rounding;
+      for (const V<Dim>& corner : part.convex.core.corners)
+        core.core.corners.push_back(pose.place(part.in_solid.place(corner)));
+    }
   }
   cores_ = std::move(cores);
 }
@@ -118,8 +121,10 @@ StartShapes::StartShapes(const Model& model, const WorldDescription& made, std::
 double StartShapes::depth(std::size_t i, std::size_t j) const {
   return std::visit(
       [&](const auto& cores) {
-        if (cores[i].core.corners.empty() || cores[j].core.corners.empty()) return 0.0;
-        return depth_of(cores[i], cores[j]);
+        double deepest = 0;
+        for (const auto& a : cores[i])
+          for (const auto& b : cores[j]) deepest = std::max(deepest, depth_of(a, b));
+        return deepest;
       },
       cores_);
 }
@@ -131,11 +136,13 @@ double StartShapes::depth_in_wall(std::size_t i, const std::array<double, 3>& no
   const double side = is_thin && above < 0 ? -1 : 1;
   return std::visit(
       [&](const auto& cores) {
-        const auto& core = cores[i].core;
-        if (core.corners.empty()) return 0.0;
-        auto towards = core.corners.front();
-        for (std::size_t k = 0; k < towards.size(); ++k) towards[k] = side * normal[k];
-        return cores[i].rounding - (least_along(core, towards) - side * offset);
+        double deepest = 0;
+        for (const auto& part : cores[i]) {
+          auto towards = part.core.corners.front();
+          for (std::size_t k = 0; k < towards.size(); ++k) towards[k] = side * normal[k];
+          deepest = std::max(deepest, part.rounding - (least_along(part.core, towards) - side * offset));
+        }
+        return deepest;
       },
       cores_);
 }

@@ -12,12 +12,15 @@
 
 namespace continuo::model::detail {
 
-/// A body at its place: all points within `rounding` of the core.
+/// A part of a body at its place: all points within `rounding` of the core.
 template <int Dim>
 struct PlacedCore {
   Polytope<double, Dim> core;  // corners and edges; faces are of no use here
   double rounding = 0;
 };
+
+template <int Dim>
+using PlacedCores = std::vector<PlacedCore<Dim>>;
 
 class StartShapes {
  public:
@@ -37,7 +40,7 @@ class StartShapes {
   template <int Dim>
   void place(const Model& model, const WorldDescription& made, std::span<const double> variables);
 
-  std::variant<std::vector<PlacedCore<2>>, std::vector<PlacedCore<3>>> cores_;
+  std::variant<std::vector<PlacedCores<2>>, std::vector<PlacedCores<3>>> cores_;  // of each body
 };
 
 }  // namespace continuo::model::detail

@@ -9,6 +9,7 @@
 #include <continuo/language/check/world/materials.hpp>
 #include <continuo/language/check/world/world_settings.hpp>
 #include <continuo/language/text/words.hpp>
+#include <continuo/language/world_methods.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -134,15 +135,13 @@ void WorldSettings::read_mode(const ast::WorldSetting& setting, Scope& scope) {
 
 void WorldSettings::settle_mode() {
   WorldDescription& made = work_.made;
-  if (!made.needs_fast_motion()) return;
+  if (!made.is_rigid()) return;
   const ast::WorldSetting* named = nullptr;
   for (const auto& item : text_.items) {
     const auto* setting = std::get_if<ast::WorldSetting>(&item.text->node);
     if (setting && setting->word.text == "mode") named = setting;
   }
-  if (named && !made.mode.fast)
-    report_.fail("E264", named->value->span, "the exact mode moves balls without joints",
-                 "other bodies, driven ones and joints are moved by the fast mode", "write mode fast step 1/60");
+  if (named && !made.mode.fast) return;
   const ast::Expression* integrator = named ? attribute(named->attributes, "integrator") : nullptr;
   if (integrator && made.mode.integrator != "semi_implicit_euler")
     report_.fail("E264", integrator->span, fmt::format("`{}` moves balls without joints", made.mode.integrator),

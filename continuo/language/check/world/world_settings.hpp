@@ -18,7 +18,8 @@ class WorldSettings {
 
   /// Before the bodies: they build upon these.
   void make();
-  /// After them: what only the fast motion moves has it, unless the mode is named. E264 where it does not fit.
+  /// After them: what is rigid is moved by the fast motion, unless the mode is named. E264 where its integrator does
+  /// not fit.
   void settle_mode();
 
  private:
