@@ -109,3 +109,36 @@ test("boxes are drawn as they stand, joints can be hidden, and a hand pulls what
   await tab.waitForFunction(() => globalThis.continuo.session.frame.positions[23] > 0.6);
   await tab.mouse.up();
 });
+
+test("a walker walks faster while its key is held, and a car is driven back by its own", async (t) => {
+  const { url } = await serve(t, model("walker"));
+  const tab = await open(t, url);
+  const place = (body) => tab.evaluate((i) => ({ x: globalThis.continuo.session.frame.positions[2 * i], t: globalThis.continuo.session.frame.t }), body);
+  const pace = async (body, from, to) => {
+    await until(tab, ({ t: time }) => time > from, "it begins", 30000);
+    const first = await place(body);
+    await until(tab, ({ t: time }) => time > to, "it goes on", 30000);
+    const last = await place(body);
+    return (last.x - first.x) / (last.t - first.t);
+  };
+  // A turn of the crank is a step of 1.418 m.
+  const alone = await pace(0, 1, 2.5);
+  assert.ok(Math.abs(alone - (2 / (2 * Math.PI)) * 1.418) < 0.1, `it walks: ${alone}`);
+  await tab.keyboard.down("w");
+  const now = (await place(0)).t;
+  const driven = await pace(0, now + 1, now + 2.5);
+  await tab.keyboard.up("w");
+  assert.ok(driven > 1.5 * alone, `the key makes it faster: ${driven}`);
+  await picture(tab, "walker");
+
+  await tab.evaluate(() => globalThis.continuo.session.send({ do: "open", model: "offroad" }));
+  await tab.waitForFunction(() => globalThis.continuo.session.model.path === "offroad.sim" && globalThis.continuo.session.frame?.positions.length > 80);
+  const car = await tab.evaluate(() => globalThis.continuo.session.model.bodies.names.indexOf("car"));
+  await tab.keyboard.down("s");
+  await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
+  await until(tab, ({ t: time }) => time > 0.9, "it drives", 30000);
+  const back = await place(car);
+  await tab.keyboard.up("s");
+  assert.ok(back.x < -0.5, `the car drives back: ${back.x}`);  // by 3 m/s^2 of its motors
+  await picture(tab, "offroad");
+});
