@@ -58,3 +58,7 @@ for file in spring.csv ball.csv ball.sim; do block tutorial_fit.md "$file"; done
 study sense_spring sense models/mass_spring_damper.sim --param k,c
 study fit_spring fit models/mass_spring_damper.sim "$scratch/spring.csv" --param k,c
 study fit_ball fit "$scratch/ball.sim" "$scratch/ball.csv" --param e,h0 --loss cauchy
+awk '/^```/ { inside = /python/; next } inside' docs/python_worlds.md > "$scratch/worlds.py"
+root=$PWD
+(cd "$scratch" && MPLBACKEND=Agg "$root/continuo.sh" python worlds.py)
+mv "$scratch/ragdoll.png" "$pictures/"

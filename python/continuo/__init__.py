@@ -7,41 +7,57 @@ from .errors import CommandError, ContinuoError, Interrupted, ModelError, ModelW
 from .events import Event
 from .expressions import TraceError, maximum, minimum, where
 from .ivp import solve_ivp
+from .joints import Joint, Limits, Motor, Spring
 from .magic import load_ipython_extension, unload_ipython_extension
 from .model import Model
 from .ode_interface import complex_ode, ode
 from .odeint_interface import ODEintWarning, odeint
 from .result import OdeResult
 from .right_hand_side import RightHandSide, expression
+from .shapes import Box, Capsule, Chain, Compound, HeightField, Hull, Part, Sphere, TriangleMesh
 from .solvers import BDF, DOP853, LSODA, OdeSolver, RK23, RK45, Radau
 from .tracing import Traced, trace
-from .world import World
+from .world import Character, World
 
 __all__ = [
     "BDF",
     "BVPResult",
+    "Box",
+    "Capsule",
+    "Chain",
+    "Character",
     "CommandError",
+    "Compound",
     "ContinuoError",
     "CubicSolution",
     "DOP853",
     "DenseOutput",
     "Event",
+    "HeightField",
+    "Hull",
     "Interrupted",
+    "Joint",
     "LSODA",
+    "Limits",
     "Model",
     "ModelError",
     "ModelWarning",
+    "Motor",
     "ODEintWarning",
     "OdeResult",
     "OdeSolution",
     "OdeSolver",
+    "Part",
     "RK23",
     "RK45",
     "Radau",
     "RightHandSide",
     "RunError",
+    "Sphere",
+    "Spring",
     "TraceError",
     "Traced",
+    "TriangleMesh",
     "World",
     "__version__",
     "complex_ode",

@@ -1,17 +1,19 @@
-"""Rigid spheres that collide: added by arrays, moved exactly or in steps, seen through NumPy views."""
+"""Rigid bodies and joints: added by arrays, moved exactly or in steps, seen through NumPy views."""
 
 from __future__ import annotations
 
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple, dataclass
 from typing import Any, Literal, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _continuo
+from . import _continuo, shapes
+from .joints import Joint, Motor, Spring, numbers
 
-__all__ = ["Contacts", "RayHit", "World"]
+__all__ = ["Character", "Contacts", "Near", "RayHit", "RayHits", "Touched", "World"]
 
 Floats = NDArray[np.float64]
 _Inner = Union[_continuo.World2, _continuo.World3]
@@ -19,13 +21,65 @@ _CHANGES = np.array(["impact", "begin", "end"])
 
 
 class RayHit(NamedTuple):
-    """Where a ray meets a body or a wall."""
+    """Where a ray, or a shape that moves, meets a body, a wall or a mesh."""
 
     body: int | None
     wall: int | None
     distance: float
     point: Floats
     normal: Floats
+    mesh: int | None = None
+
+
+class RayHits(NamedTuple):
+    """The first hit of each of N rays, as arrays; what was not hit is -1, and the distance infinite."""
+
+    body: NDArray[np.int64]
+    wall: NDArray[np.int64]
+    distance: Floats
+    point: Floats
+    normal: Floats
+    mesh: NDArray[np.int64]
+
+
+class Touched(NamedTuple):
+    """What a shape touches."""
+
+    bodies: list[int]
+    walls: list[int]
+    meshes: list[int]
+
+
+class Near(NamedTuple):
+    """A surface near a shape, by the points of both that are closest."""
+
+    body: int | None
+    wall: int | None
+    distance: float  # of both surfaces, below 0 where they overlap
+    point: Floats  # in the middle between them
+    normal: Floats  # of the other surface, towards the shape
+    mesh: int | None
+
+
+@dataclass(frozen=True)
+class Character:
+    """An upright capsule that walks, see :meth:`World.walk`.
+
+    Parameters
+    ----------
+    position : array_like, shape (d,)
+        Of its lowest point.
+    rise : float
+        Its speed upwards; a greater one than 0 makes it jump.
+    """
+
+    position: ArrayLike
+    rise: float = 0.0
+    on_ground: bool = False
+    normal: Floats | None = None  # of the ground on which it stands
+    ground: int | None = None  # the body on which it stands, unless that is a wall or a mesh
+    local_foot: Floats | None = None
+    foot: Floats | None = None
 
 
 class Contacts(NamedTuple):
@@ -53,7 +107,7 @@ class World:
     Parameters
     ----------
     dimension : {2, 3}
-        Discs in the plane, or balls in space.
+        In the plane or in space.
     gravity : array_like, shape (dimension,), or float, optional
         The acceleration of every body; a number is its size, downwards. Without it there is none.
     motion : {'exact', 'fast'}
@@ -124,6 +178,8 @@ class World:
         position: ArrayLike,
         radius: ArrayLike = 0.5,
         *,
+        shape: shapes.Shape | None = None,
+        orientation: ArrayLike | None = None,
         velocity: ArrayLike = 0.0,
         spin: ArrayLike = 0.0,
         mass: ArrayLike | None = None,
@@ -132,26 +188,48 @@ class World:
         friction: ArrayLike = 0.5,
         rolling_resistance: ArrayLike = 0.0,
         fixed: ArrayLike = False,
+        driven: ArrayLike = False,
+        sensor: ArrayLike = False,
+        locked: str | Iterable[str] = (),
+        gravity_scale: ArrayLike = 1.0,
+        damping: ArrayLike = 0.0,
+        spin_damping: ArrayLike = 0.0,
         group: ArrayLike = 0,
+        category: int = 1,
+        mask: int = (1 << 64) - 1,
     ) -> Any:
-        """Adds a body, or many by arrays.
+        """Adds a body, or many by arrays: balls, or bodies of one shape.
 
         Parameters
         ----------
         position : array_like, shape (d,) or (N, d)
-            Of the centre, or of N of them. Of the others each is one value for all, or one for each body.
-        radius, mass, density : float or array_like, shape (N,)
-            Without `mass` it is density times volume (area in the plane).
+            Of the centre of a ball, of the origin of another shape, or of N of them; `positions` has centres of
+            mass. Of the others each is one value for all, or one for each body.
+        radius : float or array_like, shape (N,)
+            Of balls.
+        shape : Sphere, Capsule, Box, Hull or Compound, optional
+            Of all these bodies, in place of a radius.
+        orientation : float or array_like, shape (N,) in the plane, shape (4,) or (N, 4) in space, optional
+            Angles, or quaternions (w, x, y, z); upright without it.
+        mass, density : float or array_like, shape (N,)
+            Without `mass` it is density times volume (area in the plane); the moments of inertia follow.
         velocity : array_like, shape (d,) or (N, d)
         spin : float, or array_like, shape (3,) or (N, 3) in space, (N,) in the plane
             The angular velocity in radians per time.
         restitution : float or array_like, shape (N,)
             0 (no bounce) to 1 (no loss).
         friction, rolling_resistance : float or array_like, shape (N,)
-        fixed : bool or array_like, shape (N,)
-            Bodies that never move.
+        fixed, driven, sensor : bool or array_like, shape (N,)
+            Bodies that never move; that move with their velocity and spin, whatever they meet; that have
+            contacts, but push nothing.
+        locked : iterable of 'x', 'y', 'z', 'turn', 'turn_x', 'turn_y', 'turn_z'
+            Directions in which all these bodies are held; 'turn' is all turns.
+        gravity_scale, damping, spin_damping : float or array_like, shape (N,)
+            Of gravity; of the velocity and of the spin, per time.
         group : int or array_like, shape (N,)
             Below 32; see :meth:`ignore`.
+        category, mask : int
+            64 bits. Two bodies collide where each has a bit of the other's mask.
 
         Returns
         -------
@@ -172,20 +250,26 @@ class World:
         n = 1 if one else len(centres)
         spins = 1 if d == 2 else 3
 
+        turns = 1 if d == 2 else 4
+        upright = (0.0 if d == 2 else shapes.turn(None, d)) if orientation is None else orientation
         values = {
             "position": centres,
             "velocity": velocity,
             "spin": spin,
+            "orientation": _unit(_columns("orientation", upright, n, turns)),
             "radius": radius,
             "mass": 1.0 if mass is None else mass,
             "density": density,
             "restitution": restitution,
             "friction": friction,
             "rolling_resistance": rolling_resistance,
+            "gravity_scale": gravity_scale,
+            "damping": damping,
+            "spin_damping": spin_damping,
             "group": group,
         }
-        widths = {"position": d, "velocity": d, "spin": spins}
-        rows = np.empty((n, 2 * d + spins + 7))
+        widths = {"position": d, "velocity": d, "spin": spins, "orientation": turns}
+        rows = np.empty((n, 2 * d + spins + turns + 10))
         place = 0
         for name, value in values.items():
             width = widths.get(name, 1)
@@ -194,10 +278,19 @@ class World:
         groups = [int(number) for number in rows[:, -1] if number in range(32)]
         if len(groups) < n:
             raise ValueError("groups are whole numbers from 0 to 31")
-        is_fixed = [bool(fixed)] * n if isinstance(fixed, bool) else _fixed(fixed, n)
+        is_driven = _flags("driven", driven, n)
+        kinds = np.where(_flags("fixed", fixed, n) | is_driven, 1, 0) + 2 * is_driven
+        kinds = kinds + 4 * _flags("sensor", sensor, n) + 256 * _locked(locked, d)
+        form = None if shape is None else shapes.form_of(shape, d, shapes.SHAPES)
         self._retire()
         handles = self._inner.add(
-            np.ascontiguousarray(rows[:, :-1]), [mass is not None] * n, is_fixed, groups
+            np.ascontiguousarray(rows[:, :-1]),
+            form,
+            mass is not None,
+            [int(kind) for kind in kinds],
+            groups,
+            _bits("category", category),
+            _bits("mask", mask),
         )
         return handles[0] if one else np.array(handles, dtype=np.int64)
 
@@ -288,6 +381,109 @@ class World:
         """Which bodies never move, shape (N,)."""
         return np.array(self._inner.fixed(), dtype=np.bool_)
 
+    @property
+    def origins(self) -> Floats:
+        """Where the origins of the shapes are, shape (N, d): of balls the centres. A copy."""
+        return self._inner.origins()
+
+    # ---- joints ----
+
+    def add_joint(
+        self,
+        kind: str,
+        b: int,
+        anchor: ArrayLike | None = None,
+        *,
+        a: int | None = None,
+        anchor_b: ArrayLike | None = None,
+        axis: ArrayLike | None = None,
+        axle: ArrayLike | None = None,
+        limits: tuple[float, float] | None = None,
+        spring: Spring | None = None,
+        motor: Motor | tuple[float, float] | None = None,
+        target: ArrayLike | None = None,
+        ratio: float = 1.0,
+        breaks_at: float = np.inf,
+        breaks_at_torque: float = np.inf,
+        collide: bool = False,
+    ) -> Joint:
+        """Joins body b with body a, or with the world, where they are now.
+
+        Parameters
+        ----------
+        kind : str
+            What is free: of a 'hinge' the rotation about the axis, of a 'ball' all rotations, of a 'slider' the
+            way along the axis, of a 'weld' nothing, of a 'distance' all but that (with an upper limit alone it is
+            a rope), of a 'wheel' the way along the axis and the rotation about the axle, of a 'universal' joint
+            the rotations about both. A 'gear' binds two rotations; a 'pull' draws b to `target`, as a mouse does.
+        b : int
+            The body whose coordinate is limited, driven and drawn.
+        anchor : array_like, shape (d,), optional
+            Where they are joined; by default at the centre of b.
+        a : int, optional
+            The other body; without it, the world.
+        anchor_b : array_like, shape (d,), optional
+            The end at b, where that differs.
+        axis, axle : array_like, shape (d,), optional
+            Of any length but 0; the axis is the last one by default.
+        limits : Limits or (lower, upper), optional
+        spring : Spring or (hertz, damping, rest), optional
+        motor : Motor or (speed, most), optional
+        target : array_like, shape (d,), optional
+            Of a 'pull'; by default the anchor.
+        ratio : float
+            Of gears: the angle of b and `ratio` times that of a have a constant sum.
+        breaks_at, breaks_at_torque : float
+            The force and the torque beyond which it acts no more; of a 'pull', `breaks_at` is its greatest force.
+        collide : bool
+            Whether the two bodies collide with each other.
+
+        Returns
+        -------
+        Joint
+            What it bears can be read from it, and limits, spring, motor, target and strength be set.
+
+        Examples
+        --------
+        >>> world = continuo.World(2, gravity=9.81, motion="fast")
+        >>> door = world.add([0.5, 0], shape=continuo.Box([1, 0.1]))
+        >>> hinge = world.add_joint("hinge", door, [0, 0], limits=(-1, 1), motor=(2, 5))
+        >>> world.step(count=240)
+        >>> round(hinge.coordinate, 3)
+        1.0
+        """
+        given: dict[str, Any] = {
+            "ratio": _number("ratio", ratio),
+            "breaks_at": _number("breaks_at", breaks_at),
+            "breaks_at_torque": _number("breaks_at_torque", breaks_at_torque),
+            "collide": bool(collide),
+        }
+        place = self.positions[self.index(b)] if anchor is None else anchor
+        for name, point in {"anchor": place, "anchor_b": anchor_b, "axis": axis, "axle": axle}.items():
+            if point is not None:
+                given[name] = _numbers(name, point)
+        if a is not None:
+            given["a"] = _handle(a)
+        for name, value, count in (("limits", limits, 2), ("motor", motor, 2)):
+            if value is not None:
+                given[name] = numbers(name, value, count)
+        if spring is not None:
+            given["spring"] = numbers("spring", Spring(*spring), 3)
+        number = self._inner.add_joint(str(kind), _handle(b), given)
+        joint = Joint(self, number)
+        if kind == "pull":
+            joint.target = _numbers("target", place if target is None else target)
+        return joint
+
+    def remove_joint(self, joint: Joint) -> None:
+        """Removes a joint. Joints go with their bodies. KeyError where there is no such joint."""
+        self._inner.remove_joint(joint._number)
+
+    @property
+    def joints(self) -> list[Joint]:
+        """All joints."""
+        return [Joint(self, number) for number in self._inner.joints()]
+
     # ---- walls and forces ----
 
     @property
@@ -342,6 +538,31 @@ class World:
         """Adds the walls of a box, of which the bodies are inside."""
         material = [restitution, friction, rolling_resistance]
         self._inner.add_container(_numbers("lower", lower), _numbers("upper", upper), material)
+
+    def add_mesh(
+        self,
+        mesh: shapes.Mesh,
+        *,
+        restitution: float = 0.0,
+        friction: float = 0.5,
+        rolling_resistance: float = 0.0,
+        category: int = 1,
+        mask: int = (1 << 64) - 1,
+    ) -> int:
+        """Adds ground that never moves: a Chain in the plane, a TriangleMesh in space, a HeightField in both.
+
+        Returns
+        -------
+        int
+            What names it, for :meth:`remove_mesh`.
+        """
+        form = shapes.form_of(mesh, self._dimension, shapes.MESHES, "mesh")
+        material = [restitution, friction, rolling_resistance]
+        return self._inner.add_mesh(form, material, _bits("category", category), _bits("mask", mask))
+
+    def remove_mesh(self, mesh: int) -> None:
+        """Removes a mesh. KeyError where there is no such mesh."""
+        self._inner.remove_mesh(_handle(mesh))
 
     @property
     def walls(self) -> list[tuple[Floats, float, bool]]:
@@ -487,6 +708,88 @@ class World:
         hits = self._inner.ray(_numbers("origin", origin), _numbers("direction", direction), reach, True)
         return [RayHit(*hit) for hit in hits]
 
+    def first_hits(
+        self, origins: ArrayLike, directions: ArrayLike, reach: float = np.inf, threads: int = 1
+    ) -> RayHits:
+        """What each of many rays meets first.
+
+        Parameters
+        ----------
+        origins, directions : array_like, shape (N, d) or (d,)
+            One for each ray, or one for all.
+        """
+        first, second = np.broadcast_arrays(
+            np.atleast_2d(_numbers("origins", origins)), np.atleast_2d(_numbers("directions", directions))
+        )
+        return RayHits(*self._inner.first_hits(first.copy(), second.copy(), reach, int(threads)))
+
+    def in_shape(
+        self, shape: shapes.Shape, position: ArrayLike, orientation: ArrayLike | None = None
+    ) -> Touched:
+        """What a shape at a place touches."""
+        return Touched(*self._inner.in_shape(*self._placed(shape, position, orientation)))
+
+    def first_contact(
+        self, shape: shapes.Shape, position: ArrayLike, way: ArrayLike, orientation: ArrayLike | None = None
+    ) -> RayHit | None:
+        """What a shape meets first that moves straight by `way`; None where that is nothing."""
+        placed = self._placed(shape, position, orientation)
+        hits = self._inner.first_contact(*placed, _numbers("way", way))
+        return RayHit(*hits[0]) if hits else None
+
+    def near_shape(
+        self, shape: shapes.Shape, position: ArrayLike, reach: float, orientation: ArrayLike | None = None
+    ) -> list[Near]:
+        """The surfaces that are not farther from a shape than `reach`, the nearest first."""
+        placed = self._placed(shape, position, orientation)
+        return [Near(*one) for one in self._inner.near_shape(*placed, _number("reach", reach))]
+
+    def _placed(
+        self, shape: shapes.Shape, position: ArrayLike, orientation: ArrayLike | None
+    ) -> tuple[tuple[Any, ...], Floats, Floats]:
+        form = shapes.form_of(shape, self._dimension, shapes.SHAPES)
+        return form, _numbers("position", position), shapes.turn(orientation, self._dimension)
+
+    def walk(
+        self,
+        character: Character,
+        velocity: ArrayLike,
+        duration: float,
+        *,
+        radius: float = 0.3,
+        height: float = 1.8,
+        steepest: float = 0.8,
+        highest_step: float = 0.3,
+        skin: float = 0.005,
+        fall_acceleration: float = 9.81,
+    ) -> Character:
+        """The character after a time: it walks, goes up steps, slides along walls, falls, and is carried by what it
+        stands on. It does not act on the world.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (d,)
+            Of which the horizontal part counts.
+        radius, height : float
+            Of the capsule.
+        steepest : float
+            The slope on which it stands, in radians.
+        highest_step : float
+            That it goes up, and down without falling.
+        skin : float
+            The distance that it keeps from surfaces.
+        fall_acceleration : float
+            Where there is no ground.
+        """
+        fields = astuple(character)
+        inner = self._inner.walk(
+            (_numbers("position", character.position), *fields[1:]),
+            _numbers("velocity", velocity),
+            _number("duration", duration),
+            [radius, height, steepest, highest_step, skin, fall_acceleration],
+        )
+        return Character(*inner)
+
     def in_sphere(self, centre: ArrayLike, radius: float) -> tuple[list[int], list[int]]:
         """The bodies and the walls that a ball touches."""
         return self._inner.in_sphere(_numbers("centre", centre), radius)
@@ -521,18 +824,24 @@ class World:
         return _restored(self._dimension, self._settings, self.snapshot())
 
     def plot(self, ax: Any = None) -> Any:
-        """The bodies as discs, in space seen along y, by matplotlib. Returns the axes."""
+        """The bodies, in space seen along y, by matplotlib. Returns the axes."""
         try:
             from matplotlib import pyplot
-            from matplotlib.collections import PatchCollection
-            from matplotlib.patches import Circle
+            from matplotlib.collections import PolyCollection
         except ImportError as error:
             raise ImportError("World.plot needs matplotlib: apt install python3-matplotlib") from error
         if ax is None:
             _, ax = pyplot.subplots()
         places = self.positions[:, [0, -1]]
-        circles = [Circle((x, y), r) for (x, y), r in zip(places, self.radii)]
-        ax.add_collection(PatchCollection(circles, alpha=0.7))
+        angles = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+        circle = np.column_stack([np.cos(angles), np.sin(angles)])
+        outlines: list[Floats] = []
+        colors: list[str] = []
+        for i, (place, radius, fixed) in enumerate(zip(places, self.radii, self.fixed)):
+            made = self._inner.outlines(i) or [place + radius * circle]
+            outlines += made
+            colors += ["tab:gray" if fixed else f"C{i % 10}"] * len(made)
+        ax.add_collection(PolyCollection(outlines, facecolors=colors, alpha=0.7))
         for normal, offset, _ in self.walls:
             across = np.array([normal[0], normal[-1]])
             if np.linalg.norm(across) > 0.5:
@@ -613,11 +922,39 @@ def _columns(name: str, value: ArrayLike, n: int, width: int) -> Floats:
     return values[:, None] if width == 1 and values.ndim == 1 else values
 
 
-def _fixed(value: ArrayLike, n: int) -> list[bool]:
+def _flags(name: str, value: ArrayLike, n: int) -> NDArray[np.bool_]:
     flags = np.asarray(value)
     if flags.dtype.kind != "b" or flags.shape not in ((), (n,)):
-        raise ValueError(f"fixed must be True, False or an array of them of the shape ({n},)")
-    return [bool(flag) for flag in np.broadcast_to(flags, (n,))]
+        raise ValueError(f"{name} must be True, False or an array of them of the shape ({n},)")
+    return np.broadcast_to(flags, (n,))
+
+
+def _locked(value: str | Iterable[str], dimension: int) -> int:
+    bits = {"x": 1, "y": 2, "z": 4, "turn": 56, "turn_x": 8, "turn_y": 16, "turn_z": 32}
+    if dimension == 2:
+        bits = {name: bits[name] for name in ("x", "y", "turn")}
+    locked = 0
+    for name in (value,) if isinstance(value, str) else tuple(value):
+        if name not in bits:
+            raise ValueError(f"locked has {name!r}; it can have {', '.join(map(repr, bits))}")
+        locked |= bits[name]
+    return locked
+
+
+def _bits(name: str, value: int) -> int:
+    if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 64:
+        raise ValueError(f"{name} is {value!r}; it must be a whole number of 64 bits")
+    return int(value)
+
+
+def _unit(turns: Floats) -> Floats:
+    """Quaternions of length 1; angles as they are."""
+    if turns.ndim == 0 or turns.shape[-1] != 4:
+        return turns
+    size = np.linalg.norm(turns, axis=-1, keepdims=True)
+    if not np.all(np.isfinite(size) & (size > 0)):
+        raise ValueError("orientation has a quaternion without length")
+    return np.asarray(turns / size)
 
 
 def _numbers(name: str, value: ArrayLike) -> Floats:

@@ -47,6 +47,12 @@ World<double, Dim>& MovingWorld<Dim>::bodies() {
 }
 
 template <int Dim>
+Joint<double, Dim>* MovingWorld<Dim>::joint(JointHandle handle) {
+  if (settings_.sleep_after > 0) changed_ = true;
+  return world_.find(handle);
+}
+
+template <int Dim>
 std::shared_ptr<FormerArrays<Dim>> MovingWorld<Dim>::memory() {
   if (!is_watched_) remember();
   is_watched_ = true;

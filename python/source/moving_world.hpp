@@ -56,6 +56,9 @@ class MovingWorld {
   }
   /// For changes of the bodies themselves: views of before no longer look into the world.
   [[nodiscard]] W& bodies();
+  /// A joint, whose limits, spring, motor, target and strength may be changed without a motion that begins anew, unless
+  /// its bodies may be asleep; null where there is none.
+  [[nodiscard]] Joint<double, Dim>* joint(JointHandle handle);
   /// What keeps the memory of a view, which may write into the world from now on.
   [[nodiscard]] std::shared_ptr<FormerArrays<Dim>> memory();
 

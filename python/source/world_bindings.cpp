@@ -13,33 +13,22 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "bound_world.hpp"
 #include "moving_world.hpp"
 #include "parts.hpp"
-#include <continuo/bodies/queries.hpp>
 
 namespace py = pybind11;
 using namespace continuo;
+using continuo::python::Array;
+using continuo::python::BoundWorld;
 using continuo::python::FormerArrays;
+using continuo::python::handle_of;
 using continuo::python::MotionSettings;
 using continuo::python::MovingWorld;
+using continuo::python::number_of;
+using continuo::python::raise_unless;
 
 namespace {
-
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-void raise_unless(const Status& status) {
-  if (status) return;
-  if (status.ending == Ending::invalid_input) throw py::value_error(describe(status));
-  throw std::runtime_error(describe(status));
-}
-
-/// A handle is one number in Python: its slot for the first body there, which has the generation 1.
-std::uint64_t number_of(BodyHandle handle) {
-  return (static_cast<std::uint64_t>(handle.generation - 1) << 32u) | handle.slot;
-}
-BodyHandle handle_of(std::uint64_t number) {
-  return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32u) + 1};
-}
 
 /// While Python waits for a move, Ctrl-C sets the interrupt of the world that is moved; Python's own handler is called
 /// as well, and raises KeyboardInterrupt when the move has ended.
@@ -80,51 +69,53 @@ std::atomic<std::atomic<bool>*> InterruptOfSignal::interrupt_{nullptr};
 struct sigaction InterruptOfSignal::former_{};
 
 template <int Dim>
-class Bound {
+class Bound : public BoundWorld<Dim> {
  public:
-  using M = MovingWorld<Dim>;
-  using W = World<double, Dim>;
-  using V = Vector<double, Dim>;
-  using Pointer = std::shared_ptr<M>;
-
-  /// Nobody may look while another thread moves the world.
-  static M& idle(const Pointer& moving) {
-    if (moving->busy) throw std::runtime_error("the world is being moved by another thread");
-    return *moving;
-  }
-
-  static V vector(const Array& numbers, const char* what) {
-    if (numbers.ndim() != 1 || numbers.shape(0) != Dim)
-      throw py::value_error(fmt::format("{} must have {} numbers", what, Dim));
-    V vector;
-    for (std::size_t k = 0; k < Dim; ++k) vector[k] = numbers.data()[k];
-    return vector;
-  }
-  static Array array(const V& vector) { return Array(Dim, vector.components.data()); }
+  using typename BoundWorld<Dim>::M;
+  using typename BoundWorld<Dim>::W;
+  using typename BoundWorld<Dim>::V;
+  using typename BoundWorld<Dim>::Pointer;
+  using BoundWorld<Dim>::idle, BoundWorld<Dim>::vector, BoundWorld<Dim>::array, BoundWorld<Dim>::known;
 
   // ---- bodies ----
 
-  /// Rows of numbers, one for each body; the columns are those of `add` in world.py.
-  static std::vector<std::uint64_t> add(const Pointer& moving, const Array& rows, const std::vector<bool>& has_mass,
-                                        const std::vector<bool>& fixed, const std::vector<std::uint32_t>& groups) {
+  /// Rows of numbers, one for each body; the columns are those of `add` in world.py. `shape` is one for all bodies, as
+  /// shape_from reads it, or None for balls. A kind is 1 of a fixed body, 2 of a driven one, 4 of a sensor, and what is
+  /// locked from the eighth bit on.
+  static std::vector<std::uint64_t> add(const Pointer& moving, const Array& rows, const py::object& shape,
+                                        bool has_mass, const std::vector<std::uint32_t>& kinds,
+                                        const std::vector<std::uint32_t>& groups, std::uint64_t category,
+                                        std::uint64_t mask) {
     M& m = idle(moving);
-    constexpr py::ssize_t spins = Dim == 2 ? 1 : 3, columns = 2 * Dim + spins + 6;
+    constexpr py::ssize_t spins = Dim == 2 ? 1 : 3, turns = Dim == 2 ? 1 : 4, columns = 2 * Dim + spins + turns + 9;
     if (rows.ndim() != 2 || rows.shape(1) != columns) throw py::value_error("rows of another form");
     const auto count = static_cast<std::size_t>(rows.shape(0));
     std::vector<BodyDefinition<double, Dim>> definitions(count);
+    std::optional<Shape<double, Dim>> of_all;
+    if (!shape.is_none()) of_all = python::shape_from<Dim>(shape.cast<py::tuple>());
     for (std::size_t i = 0; i < count; ++i) {
       const double* row = rows.data(static_cast<py::ssize_t>(i), 0);
       BodyDefinition<double, Dim>& d = definitions[i];
       for (std::size_t k = 0; k < Dim; ++k) d.position[k] = *row++;
       for (std::size_t k = 0; k < Dim; ++k) d.velocity[k] = *row++;
       for (std::size_t k = 0; k < spins; ++k) d.spin[k] = *row++;
-      d.shape = Sphere<double>{*row++};
-      if (has_mass[i]) d.mass = *row;
+      for (std::size_t k = 0; k < turns; ++k) d.orientation[k] = *row++;
+      d.shape = of_all ? *of_all : Shape<double, Dim>(Sphere<double>{*row});
+      ++row;
+      if (has_mass) d.mass = *row;
       ++row;
       d.density = *row++;
       d.material = {row[0], row[1], row[2]};
-      d.fixed = fixed[i];
+      d.fixed = (kinds[i] & 1u) != 0;
       d.group = groups[i];
+      d.traits = {.is_driven = (kinds[i] & 2u) != 0,
+                  .is_sensor = (kinds[i] & 4u) != 0,
+                  .locked = static_cast<Locked>(kinds[i] >> 8u),
+                  .gravity_scale = row[3],
+                  .damping = row[4],
+                  .spin_damping = row[5],
+                  .category = category,
+                  .mask = mask};
     }
     W& world = m.bodies();
     std::vector<std::uint64_t> handles;
@@ -138,13 +129,6 @@ class Bound {
       handles.push_back(number_of(*handle));
     }
     return handles;
-  }
-
-  static BodyHandle known(const M& m, std::uint64_t number) {
-    const BodyHandle handle = handle_of(number);
-    if (!m.world().contains(handle))
-      throw py::key_error("there is no such body: it was removed, or is of another world");
-    return handle;
   }
 
   /// A view of an array of the world, or a copy where it must not be written.
@@ -220,37 +204,6 @@ class Bound {
     return fields;
   }
 
-  // ---- questions ----
-
-  template <class Value>
-  static Value answer(const Result<Value>& result) {
-    raise_unless(result.status());
-    return *result;
-  }
-  static py::list ray(const Pointer& moving, const Array& origin, const Array& direction, double reach, bool all) {
-    const Queries<double, Dim> queries(idle(moving).world());
-    const Ray<double, Dim> ray{vector(origin, "origin"), vector(direction, "direction"), reach};
-    py::list hits;
-    for (const auto& hit : answer(all ? queries.all_hits(ray) : queries.first_hit(ray))) {
-      hits.append(py::make_tuple(hit.is_wall() ? py::object(py::none()) : py::object(py::int_(number_of(hit.body))),
-                                 hit.is_wall() ? py::object(py::int_(hit.wall)) : py::object(py::none()), hit.distance,
-                                 array(hit.point), array(hit.normal)));
-    }
-    return hits;
-  }
-  static py::tuple touched(const Overlap& overlap) {
-    std::vector<std::uint64_t> bodies;
-    for (const BodyHandle body : overlap.bodies) bodies.push_back(number_of(body));
-    return py::make_tuple(bodies, overlap.walls);
-  }
-  static py::list nearest(const Pointer& moving, const Array& point, std::size_t count) {
-    const Queries<double, Dim> queries(idle(moving).world());
-    py::list found;
-    for (const auto& neighbour : answer(queries.nearest(vector(point, "point"), count)))
-      found.append(py::make_tuple(number_of(neighbour.body), neighbour.distance));
-    return found;
-  }
-
   // ---- walls and forces ----
 
   static void add_spring(const Pointer& moving, std::uint64_t a, std::optional<std::uint64_t> b,
@@ -294,8 +247,11 @@ void bind(py::module_& module, const char* name) {
   const auto view = [](auto former, auto array, bool is_writable) {
     return [=](const P& m) { return B::view(m, former, const_cast<W&>(B::idle(m).world()).*array, is_writable); };
   };
-  py::class_<M, P>(module, name)
-      .def(py::init<MotionSettings>(), py::arg("settings"))
+  python::WorldClass<Dim> world(module, name);
+  python::bind_shapes<Dim>(world);
+  python::bind_joints<Dim>(world);
+  python::bind_queries<Dim>(world);
+  world.def(py::init<MotionSettings>(), py::arg("settings"))
       .def("set", [](const P& m, const MotionSettings& settings) { B::idle(m).set(settings); })
       .def("__len__", [](const P& m) { return m->world().size(); })
       .def("add", &B::add)
@@ -369,19 +325,6 @@ void bind(py::module_& module, const char* name) {
              return Array(static_cast<py::ssize_t>(l.size()), l.components.data());
            })
       .def("state_hash", [](const P& m) { return state_hash(B::idle(m).world()); })
-      .def("ray", &B::ray)
-      .def("in_sphere",
-           [](const P& m, const Array& centre, double radius) {
-             return B::touched(
-                 B::answer(Queries<double, Dim>(B::idle(m).world()).in_sphere(B::vector(centre, "centre"), radius)));
-           })
-      .def(
-          "in_box",
-          [](const P& m, const Array& lower, const Array& upper) {
-            return B::touched(B::answer(
-                Queries<double, Dim>(B::idle(m).world()).in_box(B::vector(lower, "lower"), B::vector(upper, "upper"))));
-          })
-      .def("nearest", &B::nearest)
       .def("save",
            [](const P& m) {
              const std::vector<std::byte> bytes = B::idle(m).save();
