@@ -669,6 +669,11 @@ class World:
         change = _CHANGES[fields.pop("change")]
         return Contacts(change=change, lost=self._inner.lost_events(), **fields)
 
+    @property
+    def asleep(self) -> int:
+        """How many bodies slept in the last step of the fast motion, see `sleep_after`."""
+        return self._inner.asleep()
+
     # ---- sums over all bodies ----
 
     @property

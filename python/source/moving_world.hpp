@@ -74,6 +74,9 @@ class MovingWorld {
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] std::size_t lost_events() const { return lost_; }
 
+  /// The bodies that slept in the last step of the fast motion.
+  [[nodiscard]] std::size_t asleep() const { return fast_ ? fast_->statistics().asleep : 0; }
+
   [[nodiscard]] std::vector<std::byte> save();
   [[nodiscard]] Status restore(std::span<const std::byte> bytes);
 

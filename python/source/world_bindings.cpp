@@ -315,6 +315,7 @@ void bind(py::module_& module, const char* name) {
       .def("advance",
            [](const P& m, std::size_t steps) { B::move(m, [steps](M& moving) { return moving.advance(steps); }); })
       .def("events", &B::events)
+      .def("asleep", [](const P& m) { return B::idle(m).asleep(); })
       .def("lost_events", [](const P& m) { return m->lost_events(); })
       .def("kinetic_energy", [](const P& m) { return kinetic_energy(B::idle(m).world()); })
       .def("potential_energy", [](const P& m) { return potential_energy(B::idle(m).world()); })

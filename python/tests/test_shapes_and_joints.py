@@ -218,7 +218,10 @@ def test_sleep_and_joints_that_wake() -> None:
     crate = world.add([0, 2], shape=Box([1, 1]), fixed=True)
     axle = world.add_joint("hinge", wheel, [0, 0.5], a=crate)
     world.step(count=240)
+    assert world.asleep == 1
     axle.motor = Motor(3, 100)
+    world.step()
+    assert world.asleep == 0
     world.step(count=120)
     assert abs(world.spins[world.index(wheel)] - 3) < 0.1
 
