@@ -47,8 +47,14 @@ void expect_the_runs_one_by_one(const PreparedSweep& sweep, const std::vector<st
   }
 }
 
+constexpr const char* readings =
+    "keep x1 at end, c*x1 + a at 1.25, x1 at 4, x1 at 0, time of end, count of events,\n"
+    "    max(x1), min(x1*b), mean(x1), x1 at 0..4 by 0.4";
+/// Nobody looks at a step.
+constexpr const char* readings_at_end = "keep x1 at end, c*x1 + a at end, time of end";
+
 /// A system of one to five states, with terms of every kind; some of its runs end before their time.
-std::string random_model(std::mt19937& random, const std::string& how) {
+std::string random_model(std::mt19937& random, const std::string& how, const std::string& keep = readings) {
   std::uniform_real_distribution<double> any(-1, 1);
   const auto n = static_cast<int>(1 + random() % 5);
   const auto x = [&] { return fmt::format("x{}", 1 + random() % static_cast<unsigned>(n)); };
@@ -81,9 +87,8 @@ std::string random_model(std::mt19937& random, const std::string& how) {
     text += fmt::format("\nx{}(0) = {}{}\n", i, any(random), i == 1 ? " + 0.1*b" : "");
   }
   return text + "run 0..4 " + how +
-         "\nsweep { a uniform(-1, 1.5); b normal(1, 0.5); x1(0) in (0.1, -0.5, 1, 2)\n  runs 27 sobol seed 3\n"
-         "  keep x1 at end, c*x1 + a at 1.25, x1 at 4, x1 at 0, time of end, count of events,\n"
-         "    max(x1), min(x1*b), mean(x1), x1 at 0..4 by 0.4 }\n";
+         "\nsweep { a uniform(-1, 1.5); b normal(1, 0.5); x1(0) in (0.1, -0.5, 1, 2)\n  runs 27 sobol seed 3\n  " +
+         keep + " }\n";
 }
 
 TEST(SweepTogether, RandomSystemsHaveTheBitsOfTheirRunsOneByOne) {
@@ -194,6 +199,26 @@ TEST(SweepTogether, StepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
       {}, native);
   EXPECT_EQ(native->report().trouble, "");
   EXPECT_GE(native->report().compiled, ways.size());
+}
+
+/// Machine code takes many steps of two groups of runs at a time where nobody looks at them. Some of the runs reject
+/// steps, fail, have steps of a limited length, or too many of them.
+TEST(SweepTogether, ManyStepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
+  const model::TestFolder folder;
+  const auto native =
+      std::make_shared<model::NativeCompiler>(model::NativeOptions{model::NativeUse::always, folder.path / "cache"});
+  const std::vector<std::string> ways = {"method tsitouras5 tol 1e-7", "method dop853 tol 1e-9",
+                                         "method bogacki_shampine3 tol 1e-3 max step 0.01"};
+  for (unsigned seed = 0; seed < ways.size(); ++seed) {
+    std::mt19937 random(seed + 40);
+    expect_the_same_by_machine_code(random_model(random, ways[seed], readings_at_end), {}, native);
+  }
+  expect_the_same_by_machine_code(
+      "param a = 0\nparam b = 1\nx' = a*x^2 + 0*sqrt(b - t)\ny' = -300*a*(y - cos(t))\nx(0) = 1\ny(0) = 2\n"
+      "run 0..1 method tsitouras5 tol 1e-6 max steps 150\n"
+      "sweep { a in (0, 0.5, 0.9, 1, 1.1, 3); b in (2, 0.5, 1, -1, 7, 1.5)\n  keep x at end, y at end }\n",
+      {.rtol_of = {{"y", 1e-9}}, .atol_of = {{"x", 1e-10}}}, native);
+  EXPECT_EQ(native->report().trouble, "");
 }
 
 /// x' = a*x^2 from 1 ends at 1/a, the root of a negative number is none, and steps can be too many.

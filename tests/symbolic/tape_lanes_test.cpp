@@ -82,7 +82,8 @@ void expect_machine_code(Graph& g, const std::vector<NodeId>& expressions, std::
     }
     tape->prepare<TapeLanes>(registers);
     reinterpret_cast<NativeLaneEvaluation>(code->code())(
-        registers.front().numbers.data(), states_of.front().numbers.data(), outputs.front().numbers.data(), nullptr);
+        registers.front().numbers.data(), states_of.front().numbers.data(), outputs.front().numbers.data(), nullptr,
+        nullptr);
     for (std::size_t lane = 0; lane < TapeLanes::width; ++lane) {
       const std::vector<double> alone = evaluated(*tape, values[lane]);
       for (std::size_t k = 0; k < alone.size(); ++k)

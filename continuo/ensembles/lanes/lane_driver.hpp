@@ -18,6 +18,7 @@
 #include <continuo/ensembles/lanes/rosenbrock_lanes.hpp>
 #include <continuo/ensembles/lanes/run_of_lane.hpp>
 #include <continuo/ensembles/lanes/run_queue.hpp>
+#include <continuo/ensembles/lanes/steps_by_system.hpp>
 #include <continuo/numerics/bernstein.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/numerics/lanes.hpp>
@@ -90,6 +91,12 @@ class LaneDriver {
     sizes_.choose();
     refresh();
     step();
+    end_step();
+  }
+
+ private:
+  // The step has been made.
+  void end_step() {
     if constexpr (PartOfPair<M>) look_for_stiffness();
     judge();
     if (sizes_.any_refused()) [[unlikely]]
@@ -103,7 +110,6 @@ class LaneDriver {
     }
   }
 
- private:
   using Wide = Lanes<double, W>;
   using WideX = ReboundState<X, Wide>;
   using WideP = ReboundState<P, Wide>;
@@ -165,6 +171,33 @@ class LaneDriver {
       fresh_ = Wide(1.0);
     }
     sizes_.pass_free_steps(steps);
+  }
+
+  /// Whether the system takes many steps of several drivers at once.
+  static constexpr bool takes_many_steps = TakesStepsTogether<F> && M::error_order > 0 && !Run::has_events &&
+                                           !has_own_runs && !is_rosenbrock && !PartOfPair<M>;
+  using MotionOfSystem = MotionBySystem<F, LaneSizes<W>, WideX, WideP>;
+  /// Whether it does now: nobody looks at the steps.
+  [[nodiscard]] bool can_take_many_steps() {
+    return is_active() && !sizes_.fixed() && !has_rows_ && f_.template can_take_steps<M>();
+  }
+  [[nodiscard]] MotionOfSystem begin_many_steps() {
+    refresh();
+    return {&f_,      sizes_.numbers(),  &system_.p, &x_, &x_new_, &work_.k.front(), &work_.k[last_stage],
+            &square_, !work_.start_fresh};
+  }
+  [[nodiscard]] StepSizeRules<Wide> step_size_rules() const {
+    return {tolerance_.all(), sizes_.controller(), M::error_order, sizes_.forward(),
+            sizes_.allowed_steps(most_steps_of_system)};
+  }
+  void end_many_steps(const MotionOfSystem& motion) {
+    fresh_ = Wide(motion.waits || keeps_slope ? 1.0 : 0.0);
+    if (!motion.waits) return;
+    work_.start_fresh = true;
+    work_.end_fresh = keeps_slope;
+    has_square_ = true;
+    sizes_.choose();
+    end_step();
   }
 
  private:
@@ -561,7 +594,8 @@ class LaneDriver {
   }
 
   static constexpr bool keeps_slope = M::tableau.first_same_as_last();
-  static constexpr std::size_t steps_between_looks = 64, most_free_steps = 256;
+  static constexpr std::size_t last_stage = M::tableau.stages - 1;  // where it is f at the end
+  static constexpr std::size_t steps_between_looks = 64, most_free_steps = 256, most_steps_of_system = 64;
   static constexpr std::array<bool, Source::count> is_guard_{has_guard<E>...};
 
   F f_;

@@ -43,6 +43,9 @@ class LaneGroups {
       }
       while (any_is_active() && !idle_can_begin()) {
         if constexpr (Driver::can_step_freely) take_free_steps();
+        if constexpr (Driver::takes_many_steps) {
+          if (take_many_steps()) continue;
+        }
         for (One& group : groups_)
           if (group.driver.is_active()) group.driver.take_step();
       }
@@ -54,7 +57,13 @@ class LaneGroups {
     Driver driver;
   };
   // A step of few stages is short beside the time that its stages wait for each other.
-  static constexpr std::size_t least = M::error_order == 0 && Driver::can_step_freely ? 4 : 1;
+  static constexpr std::size_t least = [] {
+    if constexpr (Driver::takes_many_steps) {
+      return F::motions_at_once;
+    } else {
+      return std::size_t(M::error_order == 0 && Driver::can_step_freely ? 4 : 1);
+    }
+  }();
   static constexpr std::size_t count = std::max(W / width, least);
 
   Queue& queue_;
@@ -74,6 +83,21 @@ class LaneGroups {
       std::array<typename Driver::FreeMotion, count> motions{groups_[i].driver.free_motion()...};
       Driver::take_free_steps(motions, steps, all);
       (groups_[i].driver.pass_free_steps(motions[i], steps), ...);
+    }(std::make_index_sequence<count>());
+  }
+  // Lets the system take steps of all groups. False where it cannot.
+  [[nodiscard]] bool take_many_steps()
+    requires Driver::takes_many_steps
+  {
+    for (One& group : groups_)
+      if (!group.driver.can_take_many_steps()) return false;
+    auto rules = groups_[0].driver.step_size_rules();
+    for (const One& group : groups_) rules.most = std::min(rules.most, group.driver.step_size_rules().most);
+    return [&]<std::size_t... i>(std::index_sequence<i...>) {
+      std::array<typename Driver::MotionOfSystem, count> motions{groups_[i].driver.begin_many_steps()...};
+      F::template take_steps<M>(motions, rules);
+      (groups_[i].driver.end_many_steps(motions[i]), ...);
+      return true;
     }(std::make_index_sequence<count>());
   }
   [[nodiscard]] bool any_is_active() const {

@@ -194,6 +194,29 @@ class LaneSizes {
         if (accepted_[lane] && tries[lane] >= max_steps_) refuse(lane, Ending::too_many_steps, 0);
   }
 
+  // ---- steps that a system takes itself, see steps_by_system.hpp
+
+  /// At least a register of floats: those of the lanes, and zeros.
+  using Floats = Lanes<float, (W + 3) / 4 * 4>;
+  /// What it reads and changes.
+  struct Numbers {
+    Wide &t, &next, &carried, &steps;
+    const Wide &limit, &longest, &active;
+    Floats &last, &before_last, &rejects;
+  };
+  [[nodiscard]] Numbers numbers() {
+    return {t_, next_, carried_, steps_, limit_, longest_, active_, errors_.last, errors_.before_last, rejects_};
+  }
+  [[nodiscard]] const Controller& controller() const { return controller_; }
+  [[nodiscard]] double forward() const { return forward_; }
+  /// How many steps every active lane may accept, at most `most`, before one has too many.
+  [[nodiscard]] std::size_t allowed_steps(std::size_t most) const {
+    double count = static_cast<double>(most);
+    for (std::size_t lane = 0; lane < W; ++lane)
+      if (is_active(lane)) count = std::min(count, max_steps_ - steps_[lane] - rejected_[lane] - 1);
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+
   // ---- lanes that cannot go on
 
   struct Refusal {
@@ -264,8 +287,6 @@ class LaneSizes {
     refused_[refused_count_++] = {lane, ending, error};
   }
 
-  // At least a register of floats: those of the lanes, and zeros.
-  using Floats = Lanes<float, (W + 3) / 4 * 4>;
   static constexpr double safety_of_count = 2;  // steps: the last ones are looked at one by one
   static constexpr double parts_of_run = 50;
 

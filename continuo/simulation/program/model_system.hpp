@@ -177,7 +177,7 @@ bool ModelSystem::take_step(double t, const X& x, double h, typename M::template
                       .atol = tolerance.atol_each ? tolerance.atol_each : &tolerance.atol,
                       .rtol_each = tolerance.rtol_each ? 1 : 0,
                       .atol_each = tolerance.atol_each ? 1 : 0};
-  code(derivatives_[mode_].registers(), nullptr, nullptr, &step);
+  code(derivatives_[mode_].registers(), nullptr, nullptr, &step, nullptr);
   work.start_fresh = true;
   work.end_fresh = M::tableau.first_same_as_last();
   return true;

@@ -8,6 +8,7 @@
 
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/numerics/coefficient.hpp>
+#include <continuo/solve/steps/controller.hpp>
 #include <continuo/symbolic/native/c_step.hpp>
 
 namespace continuo::model {
@@ -38,6 +39,27 @@ template <class M>
   }
   made.ends_with_f = tableau.first_same_as_last();
   return made;
+}
+
+/// How the sizes of many steps are chosen, as ErrorHistoryOf::accept does, and their errors measured: by numbers that
+/// the tolerance has.
+template <class Real>
+[[nodiscard]] LaneSteps steps_by(const Controller& controller, int error_order, const Tolerance<Real>& tolerance) {
+  const auto numbers = [](const Real* first) { return reinterpret_cast<const double*>(first); };
+  const float order = ErrorHistory::exponent_of(error_order);
+  LaneSteps steps{};
+  steps.rtol = numbers(tolerance.rtol_each ? tolerance.rtol_each : &tolerance.rtol);
+  steps.atol = numbers(tolerance.atol_each ? tolerance.atol_each : &tolerance.atol);
+  steps.rtol_each = tolerance.rtol_each ? 1 : 0;
+  steps.atol_each = tolerance.atol_each ? 1 : 0;
+  steps.beta2 = static_cast<float>(controller.beta2);
+  steps.beta3 = static_cast<float>(controller.beta3);
+  steps.minus_order = -order;
+  steps.order_beta1 = order * static_cast<float>(controller.beta1);
+  steps.safety = static_cast<float>(controller.safety);
+  steps.least_factor = static_cast<float>(controller.least_factor);
+  steps.greatest_factor = static_cast<float>(controller.greatest_factor);
+  return steps;
 }
 
 }  // namespace continuo::model

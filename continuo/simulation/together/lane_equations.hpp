@@ -9,10 +9,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include <continuo/ensembles/lanes/steps_by_system.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/program/step_formula.hpp>
 #include <continuo/simulation/together/lane_derivatives.hpp>
 #include <continuo/simulation/together/lane_tape.hpp>
 #include <continuo/symbolic/native/c_step.hpp>
@@ -48,10 +51,26 @@ class LaneEquations {
                                typename M::template Workspace<std::vector<Wide>>& work, std::vector<Wide>& x_new,
                                const Tolerance<Wide>& tolerance, Wide* square, bool keeps_stages);
 
+  /// Many steps of two groups of runs by machine code, see ensembles/lanes/steps_by_system.hpp.
+  static constexpr std::size_t motions_at_once = 2;
+  template <class M>
+  [[nodiscard]] bool can_take_steps() const {
+    constexpr LaneSteps none{};
+    const NativeLaneEvaluation native = rates_.code();
+    return native != nullptr && native(nullptr, nullptr, nullptr, nullptr, &none) != 0;
+  }
+  template <class M, class Motion>
+  static void take_steps(std::array<Motion, motions_at_once>& motions,
+                         const continuo::detail::StepSizeRules<Wide>& rules);
+
   /// What `ensemble` asks of a system.
   bool autonomous;
 
  private:
+  template <class Number>
+  [[nodiscard]] static auto* numbers(Number* wide) {
+    return reinterpret_cast<typename Number::Scalar*>(const_cast<std::remove_const_t<Number>*>(wide));
+  }
   // What the derivatives do not give, of one run.
   void replace_not_finite(double t, const std::vector<double>& x, std::span<double> rows, const std::vector<double>& p);
   // Calls `act(lane, t)` for each lane in which some of these are not finite, with its state in x_ and p_.
@@ -74,7 +93,6 @@ bool LaneEquations::take_step(const Wide& t, const std::vector<Wide>& x, const W
   const NativeLaneEvaluation native = rates_.code();
   if (native == nullptr) return false;
   constexpr std::size_t stages = M::tableau.stages;
-  const auto numbers = [](auto* wide) { return reinterpret_cast<double*>(const_cast<Wide*>(wide)); };
   std::array<double*, stages> k;
   for (std::size_t j = 0; j < stages; ++j) k[j] = numbers(work.k[j].data());
   const LaneStep step{.t = numbers(&t),
@@ -89,10 +107,45 @@ bool LaneEquations::take_step(const Wide& t, const std::vector<Wide>& x, const W
                       .atol = numbers(tolerance.atol_each ? tolerance.atol_each : &tolerance.atol),
                       .rtol_each = tolerance.rtol_each ? 1 : 0,
                       .atol_each = tolerance.atol_each ? 1 : 0};
-  native(rates_.registers(p), nullptr, nullptr, &step);
+  native(rates_.registers(p), nullptr, nullptr, &step, nullptr);
   work.start_fresh = true;
   work.end_fresh = M::tableau.first_same_as_last();
   return true;
+}
+
+template <class M, class Motion>
+void LaneEquations::take_steps(std::array<Motion, motions_at_once>& motions,
+                               const continuo::detail::StepSizeRules<Wide>& rules) {
+  std::array<LaneMotion, motions_at_once> all{};
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Motion& one = motions[i];
+    all[i] = {.registers = one.system->rates_.registers(*one.p),
+              .t = numbers(&one.sizes.t),
+              .next = numbers(&one.sizes.next),
+              .carried = numbers(&one.sizes.carried),
+              .steps = numbers(&one.sizes.steps),
+              .x = numbers(one.x->data()),
+              .last = numbers(&one.sizes.last),
+              .before_last = numbers(&one.sizes.before_last),
+              .rejects = numbers(&one.sizes.rejects),
+              .limit = numbers(&one.sizes.limit),
+              .longest = numbers(&one.sizes.longest),
+              .until = numbers(&one.sizes.limit),
+              .active = numbers(&one.sizes.active),
+              .x_new = numbers(one.x_new->data()),
+              .square = numbers(one.square),
+              .first_stage = numbers(one.first_stage->data()),
+              .last_stage = numbers(one.last_stage->data()),
+              .evaluates_start = one.evaluates_start ? 1 : 0,
+              .waits = 0};
+  }
+  LaneSteps steps = steps_by(rules.controller, rules.error_order, rules.tolerance);
+  steps.motions = all.data();
+  steps.count = static_cast<long long>(motions.size());
+  steps.most = static_cast<long long>(rules.most);
+  steps.forward = rules.forward;
+  motions.front().system->rates_.code()(nullptr, nullptr, nullptr, nullptr, &steps);
+  for (std::size_t i = 0; i < motions.size(); ++i) motions[i].waits = all[i].waits != 0;
 }
 
 }  // namespace continuo::model

@@ -59,7 +59,7 @@ void LaneTape::operator()(const Wide& t, std::span<const Wide> x, std::span<Wide
   double* const all = registers(p);
   std::memcpy(all + Layout::time * lanes, &t, sizeof t);
   if (const NativeLaneEvaluation native = code()) {
-    native(all, reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(outputs.data()), nullptr);
+    native(all, reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(outputs.data()), nullptr, nullptr);
   } else {
     with_registers([&](auto& registers) { evaluate_tape(registers, x, outputs); });
   }

@@ -105,7 +105,7 @@ struct ErrorHistoryOf {
                       0.9F);
   }
 
- private:
+  /// Of the squares of errors.
   [[nodiscard]] static float exponent_of(int error_order) { return 0.5F / static_cast<float>(error_order + 1); }
 };
 using ErrorHistory = ErrorHistoryOf<float>;

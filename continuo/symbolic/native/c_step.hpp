@@ -1,4 +1,4 @@
-// A whole step of an explicit Runge-Kutta method for several runs at once, written as C with the equations inside: the
+// Whole steps of an explicit Runge-Kutta method for several runs at once, written as C with the equations inside: the
 // compiler knows how many states there are, and which registers this processor has.
 //
 //   const std::string text = c_lane_evaluation(tape, formula);   // a function `evaluate`: a NativeLaneEvaluation
@@ -35,8 +35,37 @@ struct LaneStep {
   long long rtol_each, atol_each;  // 0: one for all, 1: one for each component
 };
 
-/// f at `states` where `step` is null, otherwise the step. Registers, states and outputs are those of TapeLanes.
-using NativeLaneEvaluation = void (*)(double* registers, const double* states, double* outputs, const LaneStep* step);
+/// Eight runs on their way, or one, each with a size of step of its own: what LaneSizes and StepControl have.
+struct LaneMotion {
+  double* registers;
+  double *t, *next, *carried, *steps;   // next: the size of the next step; carried: what t lacks
+  double* x;                            // the state at t
+  float *last, *before_last, *rejects;  // logarithms of the last two errors, and how many steps were rejected
+  const double *limit, *longest;        // of the run, and of a step
+  const double* until;                  // a step that does not end before is not accepted
+  const double* active;                 // 0 where there is no run
+  double *x_new, *square;               // of a step that waits: its end, and its error as in LaneStep
+  double *first_stage, *last_stage;     // f at its start, and where the method computes it, at its end
+  long long evaluates_start;            // 0: first_stage has f at the start already
+  long long waits;                      // a step was made that is to be judged
+};
+
+/// Steps of several motions, and how their sizes are chosen: the numbers of a Controller, see ErrorHistoryOf.
+struct LaneSteps {
+  LaneMotion* motions;
+  long long count, most;           // most: steps that are accepted at once
+  const double *rtol, *atol;       // as in LaneStep
+  long long rtol_each, atol_each;  // as in LaneStep
+  double forward;                  // the sign of all steps
+  float beta2, beta3, minus_order, order_beta1, safety, least_factor, greatest_factor;
+};
+
+/// f at `states` where `step` and `steps` are null, otherwise the step, or steps: each motion goes on as long as all
+/// its runs accept their steps and none has come to its limit. Then it waits, with a step that somebody else judges; or
+/// it does not, and has accepted all, as another motion waits. One run alone never waits. Registers, states and outputs
+/// are those of TapeLanes. Returns 0 for `steps` where there is only one step at a time, and else 1.
+using NativeLaneEvaluation = long long (*)(double* registers, const double* states, double* outputs,
+                                           const LaneStep* step, const LaneSteps* steps);
 
 /// The text of the function `evaluate`, but for what every text for a C compiler of ours begins with.
 [[nodiscard]] std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula);
