@@ -14,6 +14,11 @@ std::size_t find_by(const List& list, Name member, std::string_view wanted) {
   return found == list.end() ? npos : static_cast<std::size_t>(found - list.begin());
 }
 
+/// Most settings are a number or a name: no list of what they are computed from is needed.
+bool is_at_hand(const Model& model, NodeId node) {
+  return node.valid() && (model.graph[node].op == Op::constant || model.graph[node].op == Op::variable);
+}
+
 /// In one pass: thousands of cells of a grid share most of what they start from.
 template <class Item>
 void set_all(const Model& model, const std::vector<Item>& items, NodeId Item::* expression,
@@ -21,7 +26,12 @@ void set_all(const Model& model, const std::vector<Item>& items, NodeId Item::* 
   std::vector<NodeId> nodes;
   nodes.reserve(items.size());
   for (const Item& item : items) nodes.push_back(item.*expression);
-  const std::vector<double> values = evaluate(model, nodes, variables);
+  std::vector<double> values;
+  if (std::ranges::all_of(nodes, [&](NodeId node) { return is_at_hand(model, node); })) {
+    for (const NodeId node : nodes) values.push_back(evaluate(model, node, variables));
+  } else {
+    values = evaluate(model, nodes, variables);
+  }
   for (std::size_t i = 0; i < items.size(); ++i) variables[items[i].variable] = values[i];
 }
 
@@ -63,9 +73,8 @@ std::size_t find_mode(const Model& model, std::string_view name) {
 }
 
 double evaluate(const Model& model, NodeId node, std::span<const double> variables) {
-  // Most settings are a number or a name: no list of what they are computed from is needed.
-  if (node.valid() && model.graph[node].op == Op::constant) return model.graph[node].value;
-  if (node.valid() && model.graph[node].op == Op::variable) return variables[model.graph[node].number];
+  if (is_at_hand(model, node))
+    return model.graph[node].op == Op::constant ? model.graph[node].value : variables[model.graph[node].number];
   return evaluate(model, {&node, 1}, variables).front();
 }
 std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes, std::span<const double> variables) {
