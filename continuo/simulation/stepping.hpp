@@ -5,6 +5,7 @@
 //   while (run->advance(watcher)) use(run->t(), run->x());
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -52,6 +53,8 @@ class StepWatcher {
   virtual ~StepWatcher() = default;
   /// The motion is final up to `to`; run.at(t, x) gives x there.
   virtual void on_segment(Stepping& run, double to) = 0;
+  /// Pieces that end before this time need not be shown.
+  [[nodiscard]] virtual double quiet_until() const { return -std::numeric_limits<double>::infinity(); }
   /// Events have fired.
   virtual void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) = 0;
 };

@@ -18,7 +18,8 @@ struct EventOccurrence {
 };
 
 /// An observer of a run. The run calls `on_segment(integrator, from, to)` for every piece of the trajectory that is
-/// final (integrator.at(t, x) gives x there), and `on_event(integrator, EventOccurrence)` at every event.
+/// final (integrator.at(t, x) gives x there), and `on_event(integrator, EventOccurrence)` at every event. One that has
+/// `quiet_until(integrator)` gets no pieces that end before that time, where the run can do without.
 struct NoObserver {
   /// Does nothing.
   template <class I, class Real>

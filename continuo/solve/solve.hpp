@@ -42,6 +42,14 @@ class SolutionRecorder {
     }
   }
 
+  /// Up to when no state is selected.
+  template <class I>
+  [[nodiscard]] Real quiet_until(I&) const {
+    const Real end = forward() * std::numeric_limits<Real>::infinity();
+    if (save_.kind == Save<X>::Kind::end) return end;
+    return only_times() && running_ ? next_ : -end;
+  }
+
   /// Records the selected states of a piece of the motion.
   template <class I>
   void on_segment(I& integrator, Real from, Real to) {

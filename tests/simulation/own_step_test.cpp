@@ -224,6 +224,28 @@ TEST(OwnStep, RunsWithEventsJumpsAndFailuresAreTheSame) {
   EXPECT_EQ(native->report().trouble, "");
 }
 
+/// Where rows are far apart, and no guard is watched, nobody sees most steps: one call takes many of them.
+TEST(OwnStep, ManyStepsAtOnceAreTheSameRun) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(3);
+  std::string any = "model Any\nparam p = 0.7\n";
+  for (int i = 1; i <= 4; ++i)
+    any += fmt::format("x{0}' = -x{0} + {1}\nx{0}(0) = 0.{0}\n", i, random_expression(4, 2, random));
+  const std::string forced =
+      "model Forced\nx' = y; y' = -sin(x) - 0.1*y + cos(1.7*t)\nx(0) = 1; y(0) = 0\n"
+      "at 3.3 { mark \"seen\" }\nat 7.1 { y := y + 0.5 }\nrun 0..40 output 9 tol 1e-8\n";
+  const std::string pole = "model Pole\nx' = 1 + x^2\nx(0) = 0\nrun 0..3 output 0.9 tol 1e-8\n";
+  const std::string many =
+      "model Many\nx' = 40*y; y' = -40*x\nx(0) = 1; y(0) = 0\nrun 0..1000 output 100 tol 1e-7 max steps 3000\n";
+  const std::string limited =
+      "model Limited\nx' = y; y' = -x\nx(0) = 1; y(0) = 0\nrun 0..30 output 7 tol 1e-5 max step 0.02\n";
+  const std::string stiff = "model Stiff\nx' = 50*(cos(t) - x)\nx(0) = 0\nrun 0..200 output 50 tol 1e-4\n";
+  for (const std::string& text : {any + "run 0..30 output 8 tol 1e-7\n", forced, pole, many, limited, stiff})
+    for (const char* method : {"dop853", "tsitouras5"}) expect_the_same_run(text, method, native);
+  EXPECT_EQ(native->report().trouble, "");
+}
+
 TEST(OwnStep, IsNotTakenWhereStatesAreHeldOrThereIsNoCompiler) {
   const TestFolder folder;
   Loaded loaded = load(Source("any.sim", "model Any\nx' = y; y' = -x\nx(0) = 1; y(0) = 0\nrun 0..1\n"));

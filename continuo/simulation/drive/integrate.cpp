@@ -27,6 +27,10 @@ class Recording final : public StepWatcher {
     if (watcher_) watcher_->on_piece(to, [&run](double t, ModelSystem::X& x) { run.at(t, x); });
   }
 
+  [[nodiscard]] double quiet_until() const override {
+    return watcher_ ? StepWatcher::quiet_until() : recorder_.quiet_until();
+  }
+
   void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) override {
     recorder_.on_event(now.t, names_.of(run.events(), now.events, true), now.before, now.after);
     if (watcher_) watcher_->on_jump(now.t, now.before, now.after);
@@ -92,6 +96,7 @@ class SteppingByName final : public Stepping {
     SteppingByName& run;
     StepWatcher& watcher;
     void on_segment(Driving&, double, double to) { watcher.on_segment(run, to); }
+    [[nodiscard]] double quiet_until(Driving&) const { return watcher.quiet_until(); }
     void on_event(Driving&, const EventOccurrence<X>& now) { watcher.on_event(run, now); }
   };
 

@@ -153,6 +153,11 @@ void RunRecorder::on_segment(double to, const At& at) {
   if (every_step_ && wants_rows()) add_row(to, x_);
 }
 
+double RunRecorder::quiet_until() const {
+  if (!watched_values_.empty() || every_step_) return -std::numeric_limits<double>::infinity();
+  return wants_rows() ? std::min(times_[next_output_], next_sample()) : next_sample();
+}
+
 void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
   for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
   if (!samples_.empty() && t == start_) set_start_values(t, after);

@@ -21,6 +21,7 @@
 #include <continuo/simulation/program/solution_series.hpp>
 #include <continuo/simulation/program/step_formula.hpp>
 #include <continuo/simulation/program/switched_motion.hpp>
+#include <continuo/solve/steps/own_steps.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
@@ -44,6 +45,10 @@ class ModelSystem {
   /// (yet), where the jumps of the equations are located, and where states are held.
   template <class M>
   [[nodiscard]] bool take_step(double t, const X& x, double h, typename M::template Workspace<X>& work, X& x_new);
+
+  /// Many steps by machine code, as detail::OwnSteps says; 0 where there is none.
+  template <class M>
+  [[nodiscard]] std::size_t take_steps(const continuo::detail::OwnSteps<X>& own);
 
   [[nodiscard]] std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
@@ -181,6 +186,41 @@ bool ModelSystem::take_step(double t, const X& x, double h, typename M::template
   work.start_fresh = true;
   work.end_fresh = M::tableau.first_same_as_last();
   return true;
+}
+
+template <class M>
+std::size_t ModelSystem::take_steps(const continuo::detail::OwnSteps<X>& own) {
+  const NativeLaneEvaluation code = step_code(step_formula_of<M>);
+  if (code == nullptr || own.most == 0) return 0;
+  constexpr double active = 1;
+  double made = 0;
+  float rejects = 0;
+  LaneMotion motion{.registers = derivatives_[mode_].registers(),
+                    .t = &own.t,
+                    .next = &own.next,
+                    .carried = &own.carried,
+                    .steps = &made,
+                    .x = own.x.data(),
+                    .last = &own.errors.last,
+                    .before_last = &own.errors.before_last,
+                    .rejects = &rejects,
+                    .limit = &own.limit,
+                    .longest = &own.longest,
+                    .until = &own.until,
+                    .active = &active,
+                    .x_new = nullptr,
+                    .square = nullptr,
+                    .first_stage = own.slope.data(),
+                    .last_stage = nullptr,
+                    .evaluates_start = 0,
+                    .waits = 0};
+  LaneSteps steps = steps_by(own.controller, M::error_order, own.tolerance);
+  steps.motions = &motion;
+  steps.count = 1;
+  steps.most = static_cast<long long>(own.most);
+  steps.forward = own.forward;
+  static_cast<void>(code(nullptr, nullptr, nullptr, nullptr, &steps));
+  return static_cast<std::size_t>(made);
 }
 
 }  // namespace continuo::model

@@ -47,6 +47,7 @@ class Driver {
         [[unlikely]]
       return end(Ending::too_many_steps, hint_of_endless(needed));
     begin_step();
+    if constexpr (requires { observer.quiet_until(*this); }) pass_quietly(limit, observer.quiet_until(*this));
     if (!steps().take(limit, options_, outcome_)) {
       ended_ = true;
       return false;
@@ -364,6 +365,18 @@ class Driver {
     if (std::exchange(shifts_end_, false)) shifted_.clear();
     for (Shift& shift : shifted_) shift.earlier = true;
     shifts_ = shifted_;
+  }
+
+  // Lets the steps go on as long as nothing happens that anybody sees.
+  void pass_quietly(Real limit, Real until) {
+    if (logic_.any_guard() || !shifted_.empty() || forward() * (until - t_) <= 0) return;
+    const std::size_t tries = statistics().steps + statistics().rejected;
+    const std::size_t last = std::min(options_.max_steps, marks_.next());  // is one that is looked at
+    if (last < tries + 2) return;
+    if (const std::optional<Real> tick = logic_.next_quiet(t_, until)) until = *tick;
+    if (steps().take_quietly(limit, until, last - tries - 1, options_) == 0) return;
+    t_ = steps().end();
+    x_ = steps().x_end();
   }
 
   // Processes the events of the last step, in the order of time.

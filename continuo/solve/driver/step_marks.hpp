@@ -29,6 +29,9 @@ class StepMarks {
     next_ = steps + every_;
   }
 
+  /// At how many tries the next time is noted.
+  [[nodiscard]] std::size_t next() const { return next_; }
+
   /// The times between which half of the steps lie, if their distance is at most a tenth of the way.
   [[nodiscard]] std::optional<std::pair<Real, Real>> crowd() const {
     if (count_ < least) return std::nullopt;

@@ -14,6 +14,7 @@
 #include <continuo/methods/support/weighted_norm.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/solve/steps/consistent.hpp>
+#include <continuo/solve/steps/own_steps.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
 namespace continuo {
@@ -53,6 +54,32 @@ class StepControl final : public Steps<System, X> {
       }
     }
     return take_fixed(limit, options, outcome);
+  }
+
+  [[nodiscard]] std::size_t take_quietly(Real limit, Real until, std::size_t most, const Options<X>& options) override {
+    if constexpr (detail::TakesManySteps<System, M, X>) {
+      constexpr bool ends_with_f = M::tableau.first_same_as_last();
+      // What was computed for the polynomial of the last step is f at another rounding of the time.
+      const bool has_slope = work_.end_fresh;
+      if (jumped_ || moved_ || corrects_ || fixed(options) || next_ == 0 || has_slope != ends_with_f) return 0;
+      const std::size_t made = system_.template take_steps<M>({.t = end_,
+                                                               .x = x_end_,
+                                                               .next = next_,
+                                                               .carried = carried_,
+                                                               .errors = errors_,
+                                                               .slope = work_.k[M::tableau.stages - 1],
+                                                               .limit = limit,
+                                                               .longest = longest_step(limit, options),
+                                                               .until = until,
+                                                               .forward = forward_,
+                                                               .most = std::min(most, steps_before_probe()),
+                                                               .tolerance = tolerance(options),
+                                                               .controller = options.controller});
+      statistics_.steps += made;
+      statistics_.evaluations += made * (M::tableau.stages - (ends_with_f ? 1 : 0));
+      return made;
+    }
+    return 0;
   }
 
   [[nodiscard]] const Interpolant<X, M::dense_degree>& interpolant() {
@@ -300,6 +327,12 @@ class StepControl final : public Steps<System, X> {
     } else {
       return false;
     }
+  }
+
+  // The steps before the next one after which stiffness is looked for.
+  [[nodiscard]] std::size_t steps_before_probe() const {
+    const std::size_t since = statistics_.steps % Base::probe_every;
+    return since == 0 && statistics_.steps >= Base::first_probe ? 0 : Base::probe_every - since;
   }
 
   // A stabilised method adds stages where the stability of a step needs them.

@@ -116,6 +116,14 @@ class Steps {
     return steps > Real(StepBudget<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
   }
 
+  /// Takes steps at which nobody looks, where the system takes many at once (own_steps.hpp): they end before `until`,
+  /// and there are at most so many. Returns how many; the next one is taken by `take`.
+  [[nodiscard]] virtual std::size_t take_quietly([[maybe_unused]] Real limit, [[maybe_unused]] Real until,
+                                                 [[maybe_unused]] std::size_t most,
+                                                 [[maybe_unused]] const Options<X>& options) {
+    return 0;
+  }
+
   /// x at a time of the last step, on the dense output.
   void at(Real t, X& x) {
     if (t == end_) {
