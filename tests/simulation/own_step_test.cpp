@@ -241,7 +241,11 @@ TEST(OwnStep, ManyStepsAtOnceAreTheSameRun) {
   const std::string limited =
       "model Limited\nx' = y; y' = -x\nx(0) = 1; y(0) = 0\nrun 0..30 output 7 tol 1e-5 max step 0.02\n";
   const std::string stiff = "model Stiff\nx' = 50*(cos(t) - x)\nx(0) = 0\nrun 0..200 output 50 tol 1e-4\n";
-  for (const std::string& text : {any + "run 0..30 output 8 tol 1e-7\n", forced, pole, many, limited, stiff})
+  const std::string line =
+      "model Line\nparam k = 3\nfor i in 1..30 { u[i](0) = sin(i) }\n"
+      "for i in 2..29 { u[i]' = k*(u[i-1] - 2*u[i] + u[i+1]) + exp(-u[i]^2)*cos(t) }\n"
+      "u[1]' = -u[1]\nu[30]' = sin(u[29])\nrun 0..20 output 6 tol 1e-6\n";
+  for (const std::string& text : {any + "run 0..30 output 8 tol 1e-7\n", forced, pole, many, limited, stiff, line})
     for (const char* method : {"dop853", "tsitouras5"}) expect_the_same_run(text, method, native);
   EXPECT_EQ(native->report().trouble, "");
 }

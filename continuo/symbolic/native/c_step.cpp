@@ -14,9 +14,10 @@ namespace continuo::model {
 
 namespace {
 
-// Beyond, f is a function that is called.
+// Of all stages: beyond, f is a function that is called. Of one: beyond, little is gained.
 constexpr std::size_t most_operations_inside = 1500;
-constexpr std::size_t most_states_of_step = 16;  // of one run
+constexpr std::size_t most_states_of_step = 64;  // of one run
+constexpr std::size_t most_states_side_by_side = 16;
 
 constexpr std::string_view beginning =
     "struct lane_step {\n"
@@ -118,8 +119,14 @@ std::string evaluate_function(StepText step, bool has_many) {
          step.text() + "}\n";
 }
 
+/// Two groups of runs go side by side where all stages of both fit one function.
+bool has_many_steps(const StepText& step) {
+  if (step.formula().error.empty()) return false;
+  return step.is_single() || (step.states() <= most_states_side_by_side && is_short(step.tape(), step.formula()));
+}
+
 std::string whole_text(const StepText& step) {
-  const bool has_many = is_worth_many_steps(step);
+  const bool has_many = has_many_steps(step);
   std::string all = rates_function(step);
   if (step.stages() > 0) all += step_function(step);
   if (has_many) all += c_many_steps(step);
@@ -140,7 +147,8 @@ std::string c_step(const Tape& tape, const CStepFormula& formula) {
 
 bool is_worth_a_step(const Tape& tape, const CStepFormula& formula) {
   const std::size_t states = tape.states_end() - tape.states_begin();
-  return states > 0 && states <= most_states_of_step && is_short(tape, formula);
+  return states > 0 && states <= most_states_of_step && tape.size().single <= most_operations_inside &&
+         formula.b.size() > 1;
 }
 
 }  // namespace continuo::model

@@ -72,8 +72,7 @@ using NativeLaneEvaluation = long long (*)(double* registers, const double* stat
 /// The same for one run, whose registers are those of the tape.
 [[nodiscard]] std::string c_step(const Tape& tape, const CStepFormula& formula);
 
-/// Whether one run gains by it: a state that fits the registers of the processor, and equations that are short enough
-/// to be written at each stage.
+/// Whether one run gains by it: a state that stays near to the processor from stage to stage.
 [[nodiscard]] bool is_worth_a_step(const Tape& tape, const CStepFormula& formula);
 
 }  // namespace continuo::model

@@ -236,10 +236,6 @@ constexpr std::string_view take_steps_of_lanes =
 
 }  // namespace
 
-bool is_worth_many_steps(const StepText& empty) {
-  return !empty.formula().error.empty() && is_worth_a_step(empty.tape(), empty.formula());
-}
-
 std::string c_many_steps(const StepText& empty) {
   const bool single = empty.is_single();
   std::string text = fmt::format("#define PARTS ({} / WIDTH)\n", empty.runs());

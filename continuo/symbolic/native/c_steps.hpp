@@ -11,10 +11,7 @@
 
 namespace continuo::model {
 
-/// Whether there are such steps.
-[[nodiscard]] bool is_worth_many_steps(const StepText& empty);
-
-/// The function `take_steps` of LaneSteps.
+/// The function `take_steps` of LaneSteps, for a method that estimates its errors.
 [[nodiscard]] std::string c_many_steps(const StepText& empty);
 
 }  // namespace continuo::model
