@@ -81,9 +81,9 @@ void expect_machine_code(Graph& g, const std::vector<NodeId>& expressions, std::
         (k >= 1 && k <= states ? states_of[k - 1] : registers[k]).set(lane, values.back()[k]);
     }
     tape->prepare<TapeLanes>(registers);
-    reinterpret_cast<NativeLaneEvaluation>(code->code())(
-        registers.front().numbers.data(), states_of.front().numbers.data(), outputs.front().numbers.data(), nullptr,
-        nullptr);
+    reinterpret_cast<NativeLaneEvaluation>(code->code())(registers.front().numbers.data(),
+                                                         states_of.front().numbers.data(),
+                                                         outputs.front().numbers.data(), nullptr, nullptr);
     for (std::size_t lane = 0; lane < TapeLanes::width; ++lane) {
       const std::vector<double> alone = evaluated(*tape, values[lane]);
       for (std::size_t k = 0; k < alone.size(); ++k)
