@@ -172,7 +172,8 @@ int main(int argc, char** argv) {
   compare<Dop853, Lorenz>({"lorenz to t = 1000", folder + "/lorenz.sim", {"x", "y", "z"}, 1000});
   compare<Tsitouras5, Kepler>(
       {"kepler, e = 0.5, to t = 10,000", folder + "/kepler.sim", {"x", "y", "x'", "y'"}, 10'000});
-  compare<Dop853, Pleiades>({"pleiades to t = 30", folder + "/pleiades.sim", bodies(7, "xy"), 30});
+  // Beyond, the motion is chaotic: rounding decides how close the next encounter is.
+  compare<Dop853, Pleiades>({"pleiades to t = 3", folder + "/pleiades.sim", bodies(7, "xy"), 3});
   compare<Dop853, OuterPlanets>(
       {"outer_planets, 2,000,000 days", folder + "/outer_planets.sim", bodies(6, "xyz"), 10 * OuterPlanets::duration});
   compare<Rodas5P, Pollution<>>(
