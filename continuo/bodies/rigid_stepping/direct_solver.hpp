@@ -13,6 +13,11 @@
 // a large multiple of the mass, so that what the penalty leaves of J v + bias vanishes from substep to substep (the
 // method of multipliers: M. R. Hestenes, J. Optim. Theory Appl. 4, 1969; M. J. D. Powell, 1969). The limit of friction
 // follows the impulse along the normal from one iteration to the next.
+//
+// Rows that push bodies out of each other may contradict each other, as where boxes overlap between two walls. Then no
+// impulses satisfy them, and multipliers would grow without end. So only the relaxing pass, which asks for no more than
+// that overlaps do not grow, hands impulses on: the pushing pass begins with those of the last relaxing pass, and the
+// next relaxing pass begins with the same ones.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -122,16 +127,20 @@ class DirectSolver {
     for (std::size_t i = 0; i < free_.size(); ++i)
       for (std::size_t k = 0; k < after[i].size(); ++k) free_[i][k] = 2 * free_[i][k] - after[i][k];
   }
-  /// Finds the impulses, and the velocities that they give. False where it does not; then nothing has changed.
+  /// Lets the next pass begin with the impulses from before the pushing pass.
+  void begin_as_before_push() { starts_ = before_push_; }
+  /// Finds the impulses, and the velocities that they give. False where it does not; then impulses and velocities are
+  /// those with which it began.
   [[nodiscard]] bool solve(RowPass pass) {
     pass_ = pass;
     const std::vector<double> before = impulses();
-    if (!newton()) {
-      restore(before);
-      return false;
-    }
+    if (pass == RowPass::push) before_push_ = before;
+    if (starts_.size() != before.size()) starts_ = before;
+    const bool is_found = newton();
+    if (!is_found) restore(starts_);
+    starts_.clear();
     v_ = velocities_of_impulses();
-    return true;
+    return is_found;
   }
 
   template <class Real>
@@ -262,7 +271,7 @@ class DirectSolver {
         const bool is_across = block.points > 0 && r >= std::size_t(block.first + block.points);
         // Those along them fade, so that a body that is squeezed does not store up more and more.
         const double kept = block.points > 0 ? 0.99 : 1;
-        row.start = row.softness > 0 || is_across ? 0 : kept * row.impulse;
+        row.start = row.softness > 0 || is_across ? 0 : kept * starts_[r];
         row.wanted = row.impulse;
       }
     update_limits();
@@ -483,6 +492,7 @@ class DirectSolver {
   std::vector<Velocity> free_, v_, step_;
   std::vector<Block<size>> mass_;
   std::vector<double> inverse_mass_, found_;
+  std::vector<double> starts_, before_push_;  // impulses of the rows
   std::vector<Matrix<double, size_of_spin>> inverse_inertia_;
   double greatest_mass_ = 0, greatest_inertia_ = 0;
   RowPass pass_ = RowPass::push;

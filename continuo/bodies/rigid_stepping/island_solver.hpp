@@ -56,7 +56,7 @@ class IslandSolver {
       is_direct_ = false;  // sweeps go on for the rest of this step
       sweeps_ = sweeps_instead;
     }
-    if (sweeps_ > 1) soften_joints(all);
+    if (sweeps_ > 1) soften(all);
     for (const std::uint32_t k : blocks_)
       for (const auto& row : all.of(all.blocks[k]))
         if (row.impulse != Real(0)) row.apply(row.impulse, bodies[all.blocks[k].a], bodies[all.blocks[k].b]);
@@ -72,6 +72,7 @@ class IslandSolver {
     } else {
       direct_.template load_biases<Real>(blocks_, all);
     }
+    direct_.begin_as_before_push();
     if (solve_directly(RowPass::relax, all, bodies)) return;
     is_direct_ = false;
     sweeps_ = sweeps_instead;
@@ -90,17 +91,21 @@ class IslandSolver {
 
  private:
   [[nodiscard]] bool solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
-    if (!direct_.solve(pass)) return false;
+    const bool is_solved = direct_.solve(pass);
+    if (!is_solved && pass == RowPass::push) return false;
     direct_.template store_bodies<Real>(members_, bodies);
     direct_.template store_impulses<Real>(blocks_, all);
-    return true;
+    return is_solved;
   }
-  /// Sweeps do not get along with joints that undo all of an error at once.
-  void soften_joints(Constraints<Real, Dim>& all) const {
+  /// Sweeps do not get along with joints that undo all of an error at once, nor with rigid contacts that push fast:
+  /// where bodies overlap, those may contradict each other.
+  void soften(Constraints<Real, Dim>& all) const {
     for (const std::uint32_t k : blocks_)
       for (auto& row : all.of(all.blocks[k])) {
         const bool is_free = row.least == -row.most && !(row.most < std::numeric_limits<Real>::infinity());
-        if (all.blocks[k].points > 0 || !is_free || row.softness > Real(0) || !(row.mass > Real(0))) continue;
+        const bool is_contact = all.blocks[k].points > 0;
+        if (is_contact && row.bias < Real(0)) row.bias *= Real(0.1);
+        if (is_contact || !is_free || row.softness > Real(0) || !(row.mass > Real(0))) continue;
         row.bias *= Real(0.1);
         row.softness = Real(0.1) / row.mass;
       }

@@ -327,9 +327,19 @@ class RigidStepper {
     is_easy_.assign(world_.size(), false);
     if (swept_.empty()) return;
     const Real h = substep();
+    const Softness<Real> soft = softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h);
     manifolds_.begin(bodies_, contacts_.all(), swept_);
-    manifolds_.set_hardness(h, softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h),
-                            options_.fastest_push);
+    manifolds_.set_hardness(h, soft, options_.fastest_push);
+    // One sweep leaves bodies that are deep in each other a part of the speed at which they are pushed apart.
+    const Real deep = options_.fastest_push / (8 * soft.rate);
+    relaxing_sweeps_ =
+        std::ranges::any_of(swept_,
+                            [&](std::uint32_t k) {
+                              return std::ranges::any_of(contacts_.all()[k].contact.all(),
+                                                         [&](const auto& at) { return at.separation < -deep; });
+                            })
+            ? sweeps_of_deep_contacts
+            : 1;
     statistics.colours = manifolds_.colours();
     const bool is_simple = only_gravity(world_) && !world_.has_traits() && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
@@ -358,7 +368,6 @@ class RigidStepper {
     for (std::size_t i = 0; i < world_.size(); ++i)
       if (swept_.empty() || !is_in_lanes_[i]) move(i, h);
     if (!swept_.empty()) push_swept(h);
-    keep_contacts();
     keep_joints();
     for (const std::uint32_t i : joined_) take_state(i);
     if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
@@ -366,8 +375,9 @@ class RigidStepper {
     for_each_island([this](std::size_t k) {
       if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
     });
-    if (!swept_.empty()) relax_swept();
+    for (int k = 0; !swept_.empty() && k < relaxing_sweeps_; ++k) relax_swept();
     note_greatest_impulses();
+    keep_contacts();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
   }
   void move(std::size_t i, const Real& h) {
@@ -696,7 +706,7 @@ class RigidStepper {
     archive(touches_), archive(sleep_);
   }
 
-  static constexpr int sweeps_of_impacts = 20;
+  static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 4;
   static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 60;
 
   World<Real, Dim>& world_;
@@ -704,6 +714,7 @@ class RigidStepper {
   ThreadTeam team_;
   ManifoldSolver<Real, Dim> manifolds_{team_};
   std::vector<std::uint32_t> swept_;            // the contacts of islands that are swept
+  int relaxing_sweeps_ = 1;                     // of these, in a substep
   std::vector<std::uint32_t> swept_joints_;     // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;           // the bodies of these
   std::vector<std::uint8_t> is_swept_;          // of each island
