@@ -47,6 +47,14 @@ template <class Real, int Dim>
   return moving;
 }
 
+/// When a body stops, and at which other one: no body is a wall, a mesh, or one that need not stop.
+template <class Real>
+struct Stop {
+  static constexpr std::uint32_t nobody = 0xffffffff;
+  Real time{};
+  std::uint32_t at = nobody;
+};
+
 /// The time of the step after which each body stops.
 template <class Real, int Dim>
 class StoppingTimes {
@@ -59,12 +67,12 @@ class StoppingTimes {
         contacts_(contacts),
         step_(step),
         bodies_(bodies),
-        until_(world.size(), step),
+        stops_(world.size(), {step}),
         is_fast_(pairs.parts().size()) {
     for (std::size_t i = 0; i < is_fast_.size(); ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
   }
 
-  [[nodiscard]] const std::vector<Real>& times() const { return until_; }
+  [[nodiscard]] const std::vector<Stop<Real>>& stops() const { return stops_; }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
     return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())];
@@ -80,13 +88,13 @@ class StoppingTimes {
       const RigidPart<Real, Dim>& other = pairs_.parts()[j];
       if (other.body == part.body || !world_.collide(part.body, other.body)) return;
       if (world_.traits(other.body).is_sensor || !may_pass(part, other) || has_contact(part, other)) return;
-      const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), until_[part.body],
+      const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
                                          part.inner_radius / 100);
-      if (contact && contact->time > Real(0)) stop(part.body, contact->time);
+      if (contact && contact->time > Real(0)) stop(part.body, contact->time, other.body);
     });
     for (const WorldMesh<Real, Dim>& mesh : world_.meshes())
       if (mesh.collides(world_.traits(part.body)))
-        stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, until_[part.body], step_));
+        stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, stops_[part.body].time, step_));
   }
   /// Stops where a contact of the beginning of the step becomes deep: the body turns about its first point into the
   /// other one.
@@ -97,22 +105,26 @@ class StoppingTimes {
     const bool is_a_fast = is_fast(a), is_b_fast = !is_wall && is_fast(parts[found.parts.b]);
     if (!is_a_fast && !is_b_fast) return;
     if (!is_wall && !may_pass(a, parts[found.parts.b])) return;
-    MovingBody<Real, Dim> of_wall;
-    const Convex<Real, Dim> point = {.core = {.corners = {{}}}};
-    if (is_wall) {
-      const auto& first = found.contact.points[0];
-      of_wall.shape = &point;
-      of_wall.position = bodies_[found.a].x_before + first.arm_a + found.contact.normal * (first.separation / 2);
-    }
-    const Real inner = is_wall ? a.inner_radius : std::min(a.inner_radius, parts[found.parts.b].inner_radius);
-    const Real time = time_of_depth(motion_of(a, bodies_[found.a], step_),
-                                    is_wall ? of_wall : motion_of(parts[found.parts.b], bodies_[found.b], step_),
-                                    found.contact.normal, inner / 4, step_);
-    if (is_a_fast) stop(found.a, time);
-    if (is_b_fast) stop(found.b, time);
+    const Real time = is_wall ? time_in_wall(found, a) : time_in_part(found, a, parts[found.parts.b]);
+    if (is_a_fast) stop(found.a, time, is_wall ? Stop<Real>::nobody : found.b);
+    if (is_b_fast) stop(found.b, time, found.a);
   }
 
  private:
+  [[nodiscard]] Real time_in_wall(const PartContact<Real, Dim>& found, const RigidPart<Real, Dim>& part) const {
+    const auto& first = found.contact.points[0];
+    const Convex<Real, Dim> point = {.core = {.corners = {{}}}};
+    const MovingBody<Real, Dim> of_wall = {
+        .shape = &point,
+        .position = bodies_[found.a].x_before + first.arm_a + found.contact.normal * (first.separation / 2)};
+    return time_of_depth(motion_of(part, bodies_[found.a], step_), of_wall, found.contact.normal, part.inner_radius / 4,
+                         step_);
+  }
+  [[nodiscard]] Real time_in_part(const PartContact<Real, Dim>& found, const RigidPart<Real, Dim>& a,
+                                  const RigidPart<Real, Dim>& b) const {
+    return time_of_depth(motion_of(a, bodies_[found.a], step_), motion_of(b, bodies_[found.b], step_),
+                         std::min(a.inner_radius, b.inner_radius) / 4, step_);
+  }
   /// Two bodies that both move may overlap for a while, and are pushed apart: to stop one of them where the other one
   /// goes on does harm. Only what would pass right through has to be stopped.
   [[nodiscard]] bool may_pass(const RigidPart<Real, Dim>& a, const RigidPart<Real, Dim>& b) const {
@@ -138,16 +150,40 @@ class StoppingTimes {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return !body.is_fixed() && way(part) > part.inner_radius / 2 && !world_.traits(part.body).is_sensor;
   }
-  void stop(std::uint32_t body, const Real& time) { until_[body] = std::min(until_[body], time); }
+  void stop(std::uint32_t body, const Real& time, std::uint32_t at = Stop<Real>::nobody) {
+    if (time < stops_[body].time) stops_[body] = {time, at};
+  }
 
   const World<Real, Dim>& world_;
   const RigidPairs<Real, Dim>& pairs_;
   std::span<const PartContact<Real, Dim>> contacts_;
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
-  std::vector<Real> until_;
+  std::vector<Stop<Real>> stops_;
   std::vector<bool> is_fast_;  // of each part
 };
+
+/// Puts a body back to where it was at a time of the step.
+template <class Real, int Dim>
+void put_back(RigidBody<Real, Dim>& body, const Real& time, const Real& step) {
+  const Spin<Real, Dim> spin = spin_between(body.orientation_before, body.orientation, step);
+  body.x = body.x_before + (body.x - body.x_before) * (time / step);
+  body.orientation = turned(body.orientation_before, spin, time);
+  const Matrix<Real, Dim> axes = body.axes;
+  body.update_axes();
+  // The spin goes back with the body: about other axes of the body, the same spin would be another energy.
+  if constexpr (Dim == 3) body.spin = body.axes * Pose<Real, Dim>{{}, axes}.local_direction(body.spin);
+}
+/// Moves a body that has stopped at a driven one along with this to the end of the step: else that would pass it.
+template <class Real, int Dim>
+void carry_along(RigidBody<Real, Dim>& body, const RigidBody<Real, Dim>& driven, const Real& time, const Real& step) {
+  const Spin<Real, Dim> spin = spin_between(driven.orientation_before, driven.orientation, step);
+  const Vector<Real, Dim> then = driven.x_before + (driven.x - driven.x_before) * (time / step);
+  const Pose<Real, Dim> axes_then{{}, rotation(turned(driven.orientation_before, spin, time))};
+  body.x = driven.x + rotation(driven.orientation) * axes_then.local_direction(body.x - then);
+  body.orientation = turned(body.orientation, spin, step - time);
+  body.update_axes();
+}
 
 /// Stops fast bodies. Returns how many. `bodies` have the world's bodies first.
 template <class Real, int Dim>
@@ -161,13 +197,11 @@ std::size_t stop_fast_bodies(const World<Real, Dim>& world, const RigidPairs<Rea
     if (found.contact.size > 0) times.find_depth(found);
   std::size_t stopped = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
-    const Real until = times.times()[i];
-    if (!(until < step)) continue;
-    RigidBody<Real, Dim>& body = bodies[i];
-    const Spin<Real, Dim> spin = spin_between(body.orientation_before, body.orientation, step);
-    body.x = body.x_before + (body.x - body.x_before) * (until / step);
-    body.orientation = turned(body.orientation_before, spin, until);
-    body.update_axes();
+    const Stop<Real> stop = times.stops()[i];
+    if (!(stop.time < step)) continue;
+    put_back(bodies[i], stop.time, step);
+    if (stop.at != Stop<Real>::nobody && bodies[stop.at].is_fixed())
+      carry_along(bodies[i], bodies[stop.at], stop.time, step);
     ++stopped;
   }
   return stopped;

@@ -36,13 +36,14 @@ class MeshPassage {
     const MovingBody<Real, Dim> still{.shape = &facet_shape_};
     const auto contact = first_contact(moving_, still, until, tolerance_);
     if (!contact) return until;
-    V normal = contact->normal;
-    if (normal == V{}) {
-      if (depth_along(into, moving_.at(Real(0)), facet) > depth_) return until;  // the solver pushes it out
-      normal = into;
-    }
+    const MovingPair<Real, Dim> pair{moving_, still};
+    if (contact->time == Real(0))
+      // The solver pushes it out, for which it has to move.
+      if (const Real start = depth_along(into, moving_.at(Real(0)), facet); start > depth_)
+        return pair.time_of_overlap(into, start + depth_ / 4, depth_ / 100, Real(0), until);
+    const V normal = contact->normal == V{} ? into : contact->normal;
     if (dot(normal, into) < Real(-0.1)) return until;
-    const Real time_of_entry = time_of_depth(moving_, still, normal, depth_, until);
+    const Real time_of_entry = pair.time_of_overlap(normal, depth_, depth_ / 100, Real(0), until);
     if (!(time_of_entry < until)) return until;
     return contact->time > Real(0) ? contact->time : time_of_entry;
   }
