@@ -150,6 +150,23 @@ TEST(SolutionSeries, OfRandomModelsIsThatOfTheTape) {
   EXPECT_GT(compared, 200);
 }
 
+// The equations are written once for all runs, which have exponents of their own.
+TEST(SolutionSeries, OfOneProgramHaveTheirOwnNumbers) {
+  const std::string text = "param k = 2, n = 3\nx' = k*x^n\nx(0) = 1\nrun 0..1\n";
+  const auto program = compile(good(text));
+  const std::vector<double> start = start_values(program->model);
+  const auto variable_of = [&](std::size_t i) {
+    return program->model.layout.parameters + static_cast<std::uint32_t>(i);
+  };
+  SolutionSeries one(*program, program->model.modes[0].derivatives, start), other = one;
+  other.set(variable_of(0), 0.5);
+  other.set(variable_of(1), 2);
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_DOUBLE_EQ(series_of(one, 0, {2})[2][0], 2 * 3 * 4 * 2 * 8 / 2.0);  // k n x^(n - 1) x' / 2
+    EXPECT_DOUBLE_EQ(series_of(other, 0, {2})[2][0], 0.5 * 2 * 2 * 0.5 * 4 / 2.0);
+  }
+}
+
 // Members of families are computed together.
 TEST(SolutionSeries, OfFamiliesIsThatOfTheTape) {
   std::mt19937 random(2);

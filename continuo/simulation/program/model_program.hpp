@@ -79,6 +79,8 @@ class SharedParts {
 /// Gives the numbers of a method; there is one for each.
 using StepFormula = CStepFormula (*)();
 
+struct SeriesEquations;  // what all SolutionSeries of the same equations share
+
 struct ModelProgram {
   explicit ModelProgram(Model model_);
 
@@ -125,6 +127,7 @@ struct ModelProgram {
 
   mutable SharedParts<std::vector<NodeId>, const Tape> shared_tapes{};
   mutable SharedParts<std::pair<std::size_t, StepFormula>, NativeFunction> step_codes{};
+  mutable SharedParts<std::vector<NodeId>, const SeriesEquations> series_equations{};  // by the nodes of derivatives
 };
 
 /// Inputs with points follow them, whoever gave the points: the file of the model or a caller.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -18,68 +19,91 @@ namespace continuo::model {
 
 using Register = std::uint32_t;
 
-/// What copies of a program share.
-struct SeriesEquations {
-  Graph graph;
-  std::vector<NodeId> derivatives;
-  std::vector<Table> tables;
-  std::vector<NodeId> exponents;  // on whose values the program depends
-};
-
-struct SolutionSeries::Program {
+/// The equations as a program of series, for one set of exponents.
+struct WrittenSeries {
   /// A number of the program: the value of an expression that does not move, or one that the compiler needs.
   struct Number {
     NodeId node;
     double value = 0;
   };
-  [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes) const;
-  void renew();
-  [[nodiscard]] NativeFunction* function_of(std::size_t order, std::span<const Register> rates);
-  void expand(double t, double scale, std::span<double> c, std::span<const Register> rates);
-
-  std::shared_ptr<const SeriesEquations> equations;
-  std::shared_ptr<NativeCompiler> native;  // null: none
-  std::uint32_t states_begin, states_end;
-  std::vector<double> variables;
-  bool is_stale = true;  // a number has changed
-
-  SeriesProgram<double> series{};
+  std::vector<double> exponents;
+  std::shared_ptr<const SeriesProgram<double>> series{};
   std::vector<Register> derivatives{};  // their registers
   Register zero = 0;                    // that of a 0
   std::vector<Number> numbers{};
-  std::vector<double> exponents{};  // as they are now
-
-  std::shared_ptr<const SeriesProgram<double>> written{};  // `series` with its exponents, for machine code
-  std::size_t members = 0;                                 // of all operations
-  bool is_compiled = false;                                // as soon as that pays
-  std::shared_ptr<NativeFunction> function{};              // of this order and these derivatives
-  std::size_t function_order = 0;
-  std::vector<Register> function_rates{};
+  std::vector<NodeId> nodes{};  // of the numbers that have one
+  std::size_t members = 0;      // of all operations
+  bool is_compiled = false;     // as soon as that pays
+  /// Machine code of an order with these registers of the derivatives.
+  mutable SharedParts<std::pair<std::size_t, std::vector<Register>>, NativeFunction> functions{};
 };
 
-/// Writes the series of a Program, level by level: the operands of an operation are on levels below its own.
+/// What all runs share, so that only the first one writes the equations as series.
+struct SeriesEquations {
+  Graph graph;
+  std::vector<NodeId> derivatives;
+  std::shared_ptr<const std::vector<Table>> tables;
+  std::vector<NodeId> exponents;           // on whose values the program depends
+  std::shared_ptr<NativeCompiler> native;  // null: none
+  std::uint32_t states_begin, states_end;
+
+  [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes, std::span<const double> variables) const {
+    return evaluate(graph, nodes, variables, [this](std::uint32_t table, double x, bool slope) {
+      const Table& of = (*tables)[table];
+      return slope ? of.slope(x) : of.value(x);
+    });
+  }
+  /// The program for the exponents that these variables give: the last one, or a new one.
+  [[nodiscard]] std::shared_ptr<const WrittenSeries> written_for(std::span<const double> variables) const;
+
+  mutable std::mutex mutex{};  // of the last one
+  mutable std::shared_ptr<const WrittenSeries> last{};
+};
+
+struct SolutionSeries::Program {
+  void renew();
+  [[nodiscard]] NativeFunction* function_of(std::size_t order, std::span<const Register> rates);
+  void expand(double t, double scale, std::span<double> c, std::span<const Register> rates);
+  void run(NativeSeries code, double t, double scale, std::span<double> c, std::size_t n);
+
+  std::shared_ptr<const SeriesEquations> equations;
+  std::vector<double> variables;
+  bool is_stale = true;  // a number has changed
+
+  std::shared_ptr<const WrittenSeries> written{};  // of the exponents as they are now
+  SeriesProgram<double> series{};                  // a copy, with the numbers of this run
+  std::shared_ptr<NativeFunction> function{};      // of this order and these derivatives
+  std::size_t function_order = 0;
+  std::vector<Register> function_rates{};
+  /// The code that the last call has run with all states free, and how many coefficients it writes: as long as nothing
+  /// changes, the next call need not ask for it again. Null where it has to.
+  NativeSeries last_code = nullptr;
+  std::size_t last_size = 0;
+};
+
+/// Writes equations as series, level by level: the operands of an operation are on levels below its own.
 class SeriesCompiler {
  public:
-  SeriesCompiler(SolutionSeries::Program& program, std::span<const double> exponents)
-      : s_(program),
-        graph_(program.equations->graph),
-        program_(program.series),
-        exponents_(exponents),
-        nodes_(reachable(graph_, program.equations->derivatives)),
+  SeriesCompiler(const SeriesEquations& equations, WrittenSeries& written)
+      : equations_(equations),
+        s_(written),
+        graph_(equations.graph),
+        program_(*new_program_),
+        exponents_(written.exponents),
+        nodes_(reachable(graph_, equations.derivatives)),
         level_(graph_.size(), 0),
         place_(graph_.size(), nowhere) {}
 
   void compile() {
-    program_.clear();
-    s_.numbers.clear();
-    const Register time = program_.add_variable(), states = program_.add_variable(s_.states_end - s_.states_begin);
+    const Register time = program_.add_variable();
+    const Register states = program_.add_variable(equations_.states_end - equations_.states_begin);
     std::map<std::size_t, std::vector<NodeId>> by_level;
     for (const NodeId id : nodes_) {
       const Node& node = graph_[id];
       if (node.op == Op::variable && node.number == Layout::time) {
         set_moving(id, 1, time);
       } else if (node.op == Op::variable && is_state(node.number)) {
-        set_moving(id, 1, states + node.number - s_.states_begin);
+        set_moving(id, 1, states + node.number - equations_.states_begin);
       } else if (const std::size_t below = level_of_arguments(node); below > 0) {
         level_[id.index] = below + 1;
         by_level[below + 1].push_back(id);
@@ -90,10 +114,17 @@ class SeriesCompiler {
     split(levels);
     for (const std::vector<Nodes>& level : levels)
       for (const Nodes& family : level) write_family(family);
-    s_.derivatives.clear();
-    for (const NodeId id : s_.equations->derivatives) s_.derivatives.push_back(place_of(id));
+    for (const NodeId id : equations_.derivatives) s_.derivatives.push_back(place_of(id));
     count_ = 1;
     s_.zero = numbers(0);
+    for (std::size_t n = 0; n < s_.numbers.size(); ++n) {
+      const auto [node, value] = s_.numbers[n];
+      if (node.valid()) s_.nodes.push_back(node);
+      program_.set_number(n, node.valid() && is_exponent(node) ? exponent(node) : value);
+    }
+    for (const SeriesOperation& o : program_.operations()) s_.members += o.count;
+    s_.is_compiled = is_worth_compiling(program_);
+    s_.series = std::move(new_program_);
   }
 
  private:
@@ -105,7 +136,9 @@ class SeriesCompiler {
   static constexpr std::size_t least_together = 4, least_part = 8;  // members
   static constexpr std::size_t most_to_split = 100'000;             // nodes
 
-  bool is_state(std::uint32_t variable) const { return variable >= s_.states_begin && variable < s_.states_end; }
+  bool is_state(std::uint32_t variable) const {
+    return variable >= equations_.states_begin && variable < equations_.states_end;
+  }
   bool moves(NodeId id) const { return level_[id.index] > 0; }
   void set_moving(NodeId id, std::size_t level, Register place) {
     level_[id.index] = level;
@@ -126,9 +159,12 @@ class SeriesCompiler {
     return place_[id.index];
   }
 
+  bool is_exponent(NodeId id) const {
+    return std::ranges::find(equations_.exponents, id) != equations_.exponents.end();
+  }
   double exponent(NodeId id) const {
-    const auto found = std::ranges::find(s_.equations->exponents, id);
-    return exponents_[static_cast<std::size_t>(found - s_.equations->exponents.begin())];
+    const auto found = std::ranges::find(equations_.exponents, id);
+    return exponents_[static_cast<std::size_t>(found - equations_.exponents.begin())];
   }
 
   Kind kind_of(NodeId id) const {
@@ -404,16 +440,18 @@ class SeriesCompiler {
   Register table(std::uint32_t number) {
     const auto [found, is_new] = numbers_of_tables_.try_emplace(number, 0);
     if (is_new) {
-      found->second = program_.add_table([equations = s_.equations, number](double x) {
-        const Table::Piece& piece = equations->tables[number].at(x);
+      found->second = program_.add_table([tables = equations_.tables, number](double x) {
+        const Table::Piece& piece = (*tables)[number].at(x);
         return LinearPiece<double>{piece.x, piece.y, piece.slope};
       });
     }
     return found->second;
   }
 
-  SolutionSeries::Program& s_;
+  const SeriesEquations& equations_;
+  WrittenSeries& s_;
   const Graph& graph_;
+  std::shared_ptr<SeriesProgram<double>> new_program_ = std::make_shared<SeriesProgram<double>>();
   SeriesProgram<double>& program_;
   std::span<const double> exponents_;
   Nodes nodes_;
@@ -511,32 +549,30 @@ class Sharing {
 
 }  // namespace
 
-std::vector<double> SolutionSeries::Program::values_of(std::span<const NodeId> nodes) const {
-  return evaluate(equations->graph, nodes, variables, [this](std::uint32_t table, double x, bool slope) {
-    return slope ? equations->tables[table].slope(x) : equations->tables[table].value(x);
-  });
+std::shared_ptr<const WrittenSeries> SeriesEquations::written_for(std::span<const double> variables) const {
+  std::vector<double> values = values_of(exponents, variables);
+  const std::scoped_lock lock(mutex);
+  if (last && last->exponents == values) return last;
+  const auto made = std::make_shared<WrittenSeries>(WrittenSeries{.exponents = std::move(values)});
+  SeriesCompiler(*this, *made).compile();
+  last = made;
+  return made;
 }
 
 void SolutionSeries::Program::renew() {
-  std::vector<double> exponents_now = values_of(equations->exponents);
-  if (derivatives.empty() || exponents_now != exponents) {
-    SeriesCompiler(*this, exponents_now).compile();
+  if (const auto now = equations->written_for(variables); written != now) {
+    written = now;
+    series = *written->series;
     function.reset();
-    is_compiled = is_worth_compiling(series);
-    written.reset();
-    members = 0;
-    for (const SeriesOperation& o : series.operations()) members += o.count;
   }
-  exponents = std::move(exponents_now);
-  std::vector<NodeId> nodes;
-  for (const Number& number : numbers)
-    if (number.node.valid()) nodes.push_back(number.node);
-  const std::vector<double> values = values_of(nodes);
+  const std::vector<double> values = equations->values_of(written->nodes, variables);
   auto value = values.begin();
-  for (std::size_t n = 0; n < numbers.size(); ++n)
-    series.set_number(n, numbers[n].node.valid() ? *value++ : numbers[n].value);
-  if (native && is_compiled && !written) written = std::make_shared<const SeriesProgram<double>>(series);
+  for (std::size_t n = 0; n < written->numbers.size(); ++n) {
+    const WrittenSeries::Number& number = written->numbers[n];
+    series.set_number(n, number.node.valid() ? *value++ : number.value);
+  }
   is_stale = false;
+  last_code = nullptr;
 }
 
 /// What the text of the function is made of, as bytes.
@@ -556,12 +592,14 @@ std::string key_of(const SeriesProgram<double>& series, std::span<const Register
 }
 
 NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::span<const Register> rates) {
-  if (!native || !is_compiled) return nullptr;
+  if (!equations->native || !written->is_compiled) return nullptr;
   if (!function || function_order != order || !std::ranges::equal(function_rates, rates)) {
     function_order = order;
     function_rates.assign(rates.begin(), rates.end());
-    function = native->function(key_of(series, rates, order), [program = written, order, list = function_rates] {
-      return series_source(*program, list, order);
+    function = written->functions.of({order, function_rates}, [&] {
+      return equations->native->function(
+          key_of(*written->series, rates, order),
+          [program = written->series, order, list = function_rates] { return series_source(*program, list, order); });
     });
   }
   return function.get();
@@ -569,36 +607,46 @@ NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::spa
 
 void SolutionSeries::Program::expand(double t, double scale, std::span<double> c, std::span<const Register> rates) {
   const std::size_t n = rates.size(), order = c.size() / n - 1;
+  last_code = nullptr;
   NativeFunction* const ready = function_of(order, rates);
   if (ready == nullptr || ready->code() == nullptr) {
     expand_solution<double>(series, rates, t, scale, c);
-    if (ready != nullptr) ready->count(members * order * order / 4);
+    if (ready != nullptr) ready->count(written->members * order * order / 4);
     return;
   }
   series.begin(order);
+  const auto code = reinterpret_cast<NativeSeries>(ready->code());
+  run(code, t, scale, c, n);
+  if (rates.data() == written->derivatives.data()) last_code = code, last_size = c.size();
+}
+
+void SolutionSeries::Program::run(NativeSeries code, double t, double scale, std::span<double> c, std::size_t n) {
   double* const rows = series.rows().data();
   rows[0] = t;
-  std::copy_n(c.data(), n, rows + 1);
-  reinterpret_cast<NativeSeries>(ready->code())(rows, c.data(), scale);
+  for (std::size_t i = 0; i < n; ++i) rows[i + 1] = c[i];
+  code(rows, c.data(), scale);
 }
 
 SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives,
                                std::span<const double> variables) {
-  auto equations = std::make_shared<SeriesEquations>();
-  equations->graph = program.model.graph;
-  equations->tables = program.tables;
-  std::vector<NodeId> nodes;
-  for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
   const Layout& layout = program.model.layout;
-  const auto states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
-  equations->derivatives = Sharing(equations->graph, layout.states, states_end).of(nodes);
-  for (const NodeId id : reachable(equations->graph, equations->derivatives))
-    if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
-  program_ = std::make_unique<Program>(Program{.equations = std::move(equations),
-                                               .native = program.model.native,
-                                               .states_begin = layout.states,
-                                               .states_end = states_end,
-                                               .variables = {variables.begin(), variables.end()}});
+  const auto make = [&] {
+    auto equations = std::make_shared<SeriesEquations>();
+    equations->graph = program.model.graph;
+    equations->tables = std::make_shared<const std::vector<Table>>(program.tables);
+    equations->native = program.model.native;
+    equations->states_begin = layout.states;
+    equations->states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
+    std::vector<NodeId> nodes;
+    for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
+    equations->derivatives = Sharing(equations->graph, layout.states, equations->states_end).of(nodes);
+    for (const NodeId id : reachable(equations->graph, equations->derivatives))
+      if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
+    return equations;
+  };
+  program_ = std::make_unique<Program>(
+      Program{.equations = program.series_equations.of({derivatives.begin(), derivatives.end()}, make),
+              .variables = {variables.begin(), variables.end()}});
   program_->variables.resize(program.tape_variables().variables);
 }
 
@@ -623,9 +671,12 @@ void SolutionSeries::set(std::uint32_t variable, double value) {
 
 void SolutionSeries::expand(double t, double scale, std::span<double> c, std::span<const std::size_t> held) {
   if (program_->is_stale) program_->renew();
-  if (held.empty()) return program_->expand(t, scale, c, program_->derivatives);
-  std::vector<Register> derivatives = program_->derivatives;
-  for (const std::size_t i : held) derivatives[i] = program_->zero;
+  const std::size_t n = program_->written->derivatives.size();
+  if (held.empty() && program_->last_code != nullptr && program_->last_size == c.size())
+    return program_->run(program_->last_code, t, scale, c, n);
+  if (held.empty()) return program_->expand(t, scale, c, program_->written->derivatives);
+  std::vector<Register> derivatives = program_->written->derivatives;
+  for (const std::size_t i : held) derivatives[i] = program_->written->zero;
   program_->expand(t, scale, c, derivatives);
 }
 
