@@ -150,6 +150,24 @@ TEST(SolutionSeries, OfRandomModelsIsThatOfTheTape) {
   EXPECT_GT(compared, 200);
 }
 
+// What a graph writes as products and roots of a sum is a power of it again.
+TEST(SolutionSeries, OfPowersWithFractionsIsThatOfTheTape) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const char* rate :
+       {"-x/hypot(x, y)^3", "x/hypot(x, hypot(y, z))^5 - y", "(x^2 + y^2)^1.5", "y/(1 + x^2)^2.5",
+        "hypot(x, y)*(x^2 + y^2)", "sqrt(1 + x*y)*(1 + x*y)", "(2 + z)^1.5/(2 + z)^0.5",
+        "z/sqrt(2 + x)^3 + sqrt(2 + x)", "hypot(x, y)^7*(x - y)", "1/hypot(y - x, z)^3 - 1/hypot(x - y, z)^3",
+        "(1 + x^2)^1.5*(1 + x^2)^1.5", "(x^2 + 1)^2*hypot(x, 1)", "x/hypot(a, 2)^3", "hypot(x, y)/hypot(x, y)^3",
+        "-(2 + x)^(-1.5)", "x^2*sqrt(x^2)*y"}) {
+    const std::string text = fmt::format(
+        "param a = 1.25\nx' = {}\ny' = x*z\nz' = {} + t\nx(0) = 1; y(0) = 1; z(0) = 1\nrun 0..1\n", rate, rate);
+    const auto program = compile(good(text));
+    const std::vector<double> x{1.2 + 0.2 * uniform(random), 0.9 * uniform(random) + 0.1, uniform(random)};
+    ASSERT_NO_FATAL_FAILURE(expect_same(*program, text, 0.4, x));
+  }
+}
+
 // The equations are written once for all runs, which have exponents of their own.
 TEST(SolutionSeries, OfOneProgramHaveTheirOwnNumbers) {
   const std::string text = "param k = 2, n = 3\nx' = k*x^n\nx(0) = 1\nrun 0..1\n";

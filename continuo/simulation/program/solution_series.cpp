@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -44,6 +45,7 @@ struct SeriesEquations {
   std::vector<NodeId> derivatives;
   std::shared_ptr<const std::vector<Table>> tables;
   std::vector<NodeId> exponents;           // on whose values the program depends
+  std::vector<double> exponent_values{};   // those of variables behind the model's
   std::shared_ptr<NativeCompiler> native;  // null: none
   std::uint32_t states_begin, states_end;
 
@@ -467,13 +469,14 @@ class SeriesCompiler {
 namespace {
 
 /// The equations written so that they cost fewer recurrences. Roots of sums of squares are powers of those sums:
-/// hypot(x, hypot(y, z))^3 = (x^2 + y^2 + z^2)^1.5 is one where it was five. And the terms of a - b and of b - a, by
-/// which a pair of bodies attract each other, are shared: squares, and quotients but for their sign and what does not
-/// move.
+/// hypot(x, hypot(y, z))^3 = (x^2 + y^2 + z^2)^1.5 is one where it was five; so is s sqrt(s), as which a graph writes
+/// s^1.5. And the terms of a - b and of b - a, by which a pair of bodies attract each other, are shared: squares, and
+/// quotients but for their sign and what does not move.
 class Sharing {
  public:
-  Sharing(Graph& graph, std::uint32_t states_begin, std::uint32_t states_end)
-      : graph_(graph), states_begin_(states_begin), states_end_(states_end) {}
+  /// Variables from `first_free` on stand for exponents: a constant would be written as products and a root again.
+  Sharing(Graph& graph, std::uint32_t states_begin, std::uint32_t states_end, std::uint32_t first_free)
+      : graph_(graph), states_begin_(states_begin), states_end_(states_end), first_free_(first_free) {}
 
   std::vector<NodeId> of(std::span<const NodeId> roots) {
     for (const NodeId id : reachable(graph_, roots)) image_[id] = rewritten(id);
@@ -481,20 +484,59 @@ class Sharing {
     for (const NodeId root : roots) result.push_back(image_.at(root));
     return result;
   }
+  /// The values of the variables that stand for exponents.
+  [[nodiscard]] const std::vector<double>& exponents() const { return exponents_; }
 
  private:
+  struct Power {
+    NodeId base;
+    double exponent;
+  };
+
   NodeId rewritten(NodeId id) {
     const Node node = graph_[id];  // a copy: the graph grows below
     if (node.op == Op::hypotenuse) {
       squares_[id] = graph_.add(square_of(node.a), square_of(node.b));
-      return graph_.apply(Op::square_root, squares_[id]);
+      return root_of(squares_[id]);
     }
+    if (node.op == Op::square_root) return root_of(image_.at(node.a));
     if (node.op == Op::multiply && node.a == node.b) return square_of(node.a);
+    if (node.op == Op::multiply) return product(image_.at(node.a), image_.at(node.b));
     if (node.op == Op::power && squares_.contains(node.a))
       return graph_.power(squares_.at(node.a), graph_.multiply(graph_.constant(0.5), image_.at(node.b)));
     if (node.op == Op::divide) return quotient(image_.at(node.a), image_.at(node.b));
     return with_arguments(graph_, id, [this](NodeId argument) { return image_.at(argument); });
   }
+
+  NodeId root_of(NodeId square) {
+    const NodeId root = graph_.apply(Op::square_root, square);
+    if (graph_[root].op == Op::square_root) powers_[root] = {graph_[root].a, 0.5};
+    return root;
+  }
+  /// A power with a fraction, where it is one of the factors times another power of the same.
+  NodeId product(NodeId a, NodeId b) {
+    for (const auto& [root, other] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto one = powers_.find(root);
+      if (one == powers_.end() || !is_fraction(one->second.exponent)) continue;
+      const auto [base, exponent] = one->second;
+      const auto known = powers_.find(other);
+      if (other == base) return power(base, exponent + 1);
+      if (known != powers_.end() && known->second.base == base && !is_fraction(known->second.exponent))
+        return power(base, exponent + known->second.exponent);
+    }
+    return graph_.multiply(a, b);
+  }
+  NodeId power(NodeId base, double exponent) {
+    const auto [found, is_new] = numbers_.try_emplace(exponent);
+    if (is_new) {
+      found->second = graph_.variable(first_free_ + static_cast<std::uint32_t>(exponents_.size()));
+      exponents_.push_back(exponent);
+    }
+    const NodeId result = graph_.power(base, found->second);
+    powers_[result] = {base, exponent};
+    return result;
+  }
+  static bool is_fraction(double exponent) { return exponent != std::floor(exponent); }
 
   /// Whether it is a - b where b - a is the one that counts.
   [[nodiscard]] bool is_turned(NodeId id) const { return graph_[id].op == Op::subtract && graph_[id].b < graph_[id].a; }
@@ -504,19 +546,30 @@ class Sharing {
     const auto known = squares_.find(id);
     if (known != squares_.end()) return known->second;
     const NodeId root = is_turned(image_.at(id)) ? turned(image_.at(id)) : image_.at(id);
-    return graph_.multiply(root, root);
+    const NodeId square = graph_.multiply(root, root);
+    const auto one = powers_.find(root);
+    if (one == powers_.end()) {
+      powers_[square] = {root, 2};
+    } else if (!is_fraction(2 * one->second.exponent)) {
+      powers_[square] = {one->second.base, 2 * one->second.exponent};
+    }
+    return square;
   }
 
-  /// Of a power with a fraction the inverse is a power too: one recurrence, where the quotient would be another.
+  /// Of a power with a fraction the inverse is a power too: one recurrence, where the quotient would be another. A
+  /// root alone may be read elsewhere.
   NodeId quotient(NodeId a, NodeId b) {
     if (!moves(b)) return graph_.divide(a, b);
-    if (graph_[b].op != Op::power || !is_fraction(graph_[b].b))
-      return shared(a, [&](NodeId part) { return graph_.divide(part, b); });
-    const NodeId inverse = graph_.power(graph_[b].a, graph_.negate(graph_[b].b));
+    NodeId inverse;
+    if (const auto known = powers_.find(b); known != powers_.end()) {
+      const auto [base, exponent] = known->second;
+      if (is_fraction(exponent) && exponent > 1) inverse = power(base, -exponent);
+    } else if (graph_[b].op == Op::power && graph_[b].b.valid()) {
+      const std::optional<double> exponent = graph_.value(graph_[b].b);
+      if (exponent && is_fraction(*exponent)) inverse = graph_.power(graph_[b].a, graph_.negate(graph_[b].b));
+    }
+    if (!inverse.valid()) return shared(a, [&](NodeId part) { return graph_.divide(part, b); });
     return shared(a, [&](NodeId part) { return graph_.multiply(part, inverse); });
-  }
-  [[nodiscard]] bool is_fraction(NodeId id) const {
-    return graph_[id].op == Op::constant && graph_[id].value != std::floor(graph_[id].value);
   }
   /// of(a), without a sign and factors that do not move.
   template <class Of>
@@ -542,8 +595,11 @@ class Sharing {
   }
 
   Graph& graph_;
-  std::uint32_t states_begin_, states_end_;
+  std::uint32_t states_begin_, states_end_, first_free_;
   std::map<NodeId, NodeId> image_, squares_;  // squares of hypotenuses
+  std::map<NodeId, Power> powers_;            // what is known to be one
+  std::map<double, NodeId> numbers_;          // exponents, as variables
+  std::vector<double> exponents_;
   std::vector<char> moves_;
 };
 
@@ -639,7 +695,9 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
     equations->states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
     std::vector<NodeId> nodes;
     for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
-    equations->derivatives = Sharing(equations->graph, layout.states, equations->states_end).of(nodes);
+    Sharing sharing(equations->graph, layout.states, equations->states_end, program.tape_variables().variables);
+    equations->derivatives = sharing.of(nodes);
+    equations->exponent_values = sharing.exponents();
     for (const NodeId id : reachable(equations->graph, equations->derivatives))
       if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
     return equations;
@@ -648,6 +706,8 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
       Program{.equations = program.series_equations.of({derivatives.begin(), derivatives.end()}, make),
               .variables = {variables.begin(), variables.end()}});
   program_->variables.resize(program.tape_variables().variables);
+  const std::vector<double>& exponents = program_->equations->exponent_values;
+  program_->variables.insert(program_->variables.end(), exponents.begin(), exponents.end());
 }
 
 SolutionSeries::SolutionSeries(const SolutionSeries& other) : program_(std::make_unique<Program>(*other.program_)) {}
