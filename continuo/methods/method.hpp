@@ -354,6 +354,9 @@ template <class M, class Work>
 ///       tolerance) -> after a step whose error passed and before `accept`: the factor for the next h, where `factor`
 ///       is the one of the controller. A method of variable order chooses its next order here; one that keeps a
 ///       factorization may return 1. A factor that is not above 0 is replaced by that of the controller
+///   M::sizes_its_steps  true where `next_factor` needs no controller: `factor` is 1
+///   M::at_part(const Workspace<X>& work, Real h, Real theta, X& x)  x at a part of the last step, where that is
+///       quicker than the polynomial of `interpolate`, from which it differs by rounding
 ///   M::rejected(Workspace<X>& work, Real h_next) the last step was not accepted and will be tried again
 ///   M::stability_limits(const Workspace<X>& work) -> whether stability may limit the last step; assumed of every
 ///       explicit method without it

@@ -10,9 +10,11 @@
 //
 // Rounding. A coefficient c_j takes part in d_k through at most 2 n + 2 rounded operations, in the sum of ranges
 // through 2 n + 3 more, and the sum over k of binomial(j, k) m^(j - k) r^k is (m + r)^j <= 1. Horner's rule, by which
-// others compute p, has 2 n. Together they are within (6 n + 8) u A, where u is half of epsilon and A = to * sum over j
-// > 0 of |c_j|, for the slope the sum of j |c_j| (N. J. Higham, Accuracy and Stability of Numerical Algorithms,
-// chapters 3 and 5). The range is widened by that, and so holds what others compute. c_0 enters by a sum at the end.
+// others compute p, has 2 n; the method `taylor` computes it from series in another unit of time, by powers of the
+// square of s, with 2 n that separate the coefficients and 3.5 n + 5 in the sum. Together they are within
+// (9.5 n + 10) u A, where u is half of epsilon and A = to * sum over j > 0 of |c_j|, for the slope the sum of j |c_j|
+// (N. J. Higham, Accuracy and Stability of Numerical Algorithms, chapters 3 and 5). The range is widened by that, and
+// so holds what others compute. c_0 enters by a sum at the end.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -33,7 +35,7 @@ namespace enclosing {
 /// What coefficients can be off by together, for the sum of their sizes 1.
 template <class Real>
 [[nodiscard]] constexpr Real polynomial_rounding(std::size_t count) {
-  return (3 * static_cast<Real>(count) + 2) * std::numeric_limits<Real>::epsilon();
+  return (5 * static_cast<Real>(count) + 2) * std::numeric_limits<Real>::epsilon();
 }
 
 /// Of `count` coefficients, a constant for the loops' sake.

@@ -269,6 +269,93 @@ constexpr auto kepler = [](auto, const auto& x, auto& dxdt) {
 };
 
 // One orbit, at the ends of steps and between them.
+
+/// A method's memory in the middle of a run, with random series at both ends of a step.
+TaylorSeries::Workspace<std::vector<double>> random_workspace(std::mt19937& random, std::size_t n, std::size_t p) {
+  std::uniform_real_distribution<double> part(-1, 1);
+  auto work = TaylorSeries::workspace(std::vector<double>(n));
+  work.order = p;
+  work.now().scale = 0.3 + part(random) / 8;
+  work.next().scale = 0.25;
+  work.next().is_known = true;
+  for (auto* const expansion : {&work.now(), &work.next()})
+    for (std::size_t k = 0; k < (p + 1) * n; ++k)
+      expansion->c[k] = part(random) * std::pow(0.2, static_cast<double>(k / n));
+  for (double& defect : work.defect) defect = std::abs(part(random)) * 1e-9;
+  return work;
+}
+
+TEST(TaylorSeries, MeasuresRegistersOfComponentsAsOneByOne) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0.5, 1);
+  for (std::size_t n = 1; n <= 9; ++n) {
+    for (const bool has_own : {false, true}) {
+      const std::size_t p = 14 + n % 4;
+      const auto work = random_workspace(random, n, p);
+      std::vector<double> x(n), x_new(n), rtol(n), atol(n);
+      for (auto* const list : {&x, &x_new, &rtol, &atol})
+        for (double& number : *list) number = part(random);
+      const Tolerance<double> tolerance{1e-9, has_own ? 1 : 0.0, has_own ? rtol.data() : nullptr,
+                                        has_own ? atol.data() : nullptr};
+      const long double theta = 0.25L / static_cast<long double>(work.now().scale),
+                        allowed[] = {std::exp(2.0L), std::exp(4.0L)};
+      long double error = 0, next[2] = {};
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto relative = static_cast<long double>(has_own ? rtol[i] : 1e-9);
+        const auto absolute = static_cast<long double>(has_own ? atol[i] : 0.0);
+        long double greatest = static_cast<long double>(work.defect[i]);
+        for (std::size_t j = 0; j < 2; ++j) {
+          const std::size_t k = p - 1 + j;
+          const long double term = std::abs(static_cast<long double>(work.now().c[k * n + i]));
+          greatest = std::max(greatest, term * std::pow(theta, static_cast<long double>(k)) * allowed[j]);
+          const long double last = static_cast<long double>(work.next().c[k * n + i]) * allowed[j];
+          next[j] += std::pow(last / (absolute + relative * static_cast<long double>(x_new[i])), 2.0L);
+        }
+        error += std::pow(greatest / (absolute + relative * static_cast<long double>(std::max(x[i], x_new[i]))), 2.0L);
+      }
+      const auto count = static_cast<long double>(n);
+      // Some 2 (p + 8) roundings of a term.
+      const long double found = TaylorSeries::error_square(work, 0.25, x, x_new, tolerance);
+      EXPECT_NEAR(static_cast<double>(found / (error / count)), 1, 1e-14);
+      long double step = 10;  // at most ten times the last one
+      for (std::size_t j = 0; j < 2; ++j)
+        step = std::min(step, std::pow(next[j] / count, -0.5L / static_cast<long double>(p - 1 + j)));
+      step *= std::exp(-0.7L / static_cast<long double>(p - 1));
+      auto mutable_work = work;
+      const double factor = TaylorSeries::next_factor(mutable_work, 0.0, 0.25, x, x_new, tolerance);
+      EXPECT_NEAR(static_cast<double>(factor / step), 1, 3e-4);  // see coarse_power.hpp
+    }
+  }
+}
+
+// What events are located on is as near to the dense output as their enclosures allow for.
+TEST(TaylorSeries, IsAtAPartOfTheStepWhereItsDenseOutputIs) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> part(0, 1);
+  const auto f = [](double, const std::vector<double>&, std::vector<double>&) {};
+  for (std::size_t n = 1; n <= 9; ++n) {
+    auto work = random_workspace(random, n, 11 + n);
+    std::vector<double> x(n);
+    Interpolant<std::vector<double>, TaylorSeries::dense_degree> output(x);
+    TaylorSeries::interpolate(f, 0.0, x, 0.35, x, work, output);
+    for (int tries = 0; tries < 50; ++tries) {
+      const double theta = part(random);
+      TaylorSeries::at_part(work, 0.35, theta, x);
+      for (std::size_t i = 0; i < n; ++i) {
+        long double value = 0, weight = 0;
+        for (std::size_t k = output.c.size() - 1; k > 0; --k) {
+          value = (value + static_cast<long double>(output.c[k][i])) * static_cast<long double>(theta);
+          weight = (weight + std::abs(static_cast<long double>(output.c[k][i]))) * static_cast<long double>(theta);
+        }
+        value += static_cast<long double>(output.c[0][i]);
+        // See polynomial_enclosure.hpp: 5.5 n + 5 roundings, and that of the sum with c_0.
+        constexpr long double u = std::numeric_limits<double>::epsilon() / 2;
+        EXPECT_LE(std::abs(static_cast<long double>(x[i]) - value), 115 * u * weight + u * std::abs(value));
+      }
+    }
+  }
+}
+
 TEST(TaylorSeries, MeetsItsTolerance) {
   for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13}) {
     const auto solution = solve(kepler, bench::Kepler::start(), {0.0, 6.0}, TaylorSeries{},

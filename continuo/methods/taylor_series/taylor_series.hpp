@@ -68,6 +68,8 @@ struct TaylorSeries {
   static constexpr int order = 20, error_order = 19, starting_order = 8, dense_degree = 20, dense_order = 20;
   static constexpr int order_of_fixed_steps = 8;
   static constexpr bool second_order = false;
+  /// Of the next step, `next_factor` knows all there is to know: no controller has to follow the errors.
+  static constexpr bool sizes_its_steps = true;
   /// No coefficients can be had of every system.
   static constexpr bool needs_series = true;
   /// Components of a vector of 256 bits.
@@ -87,6 +89,13 @@ struct TaylorSeries {
     }
   };
 
+  /// What a step and the next one are judged by, as mean squares in units of a tolerance.
+  template <class Real>
+  struct Measure {
+    Real error{};                      // of the greatest of the defect and what `allowance` says of the last two terms
+    std::array<Real, 2> next_terms{};  // the last two coefficients at the end of the step
+  };
+
   template <State X>
   struct Workspace {
     using Real = Scalar<X>;
@@ -95,6 +104,8 @@ struct TaylorSeries {
     X rest, next_rest;       // what rounding has taken from x, and will have taken from x_new
     X defect, point, slope;  // f less the slope of the polynomial, times h/(p + 1); scratch
     X polynomial_slope;      // where the polynomial was evaluated last, by `scale`
+    Measure<Real> measure;   // of the step by `tolerance`
+    bool is_measured = false;
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
     std::size_t order = 0;        // p; 0: not chosen
     bool is_retaken = false;      // the step begins where the last try did
@@ -164,6 +175,7 @@ struct TaylorSeries {
     using Real = Scalar<X>;
     int evaluations = 0;
     const bool is_retaken = std::exchange(work.is_retaken, false);
+    work.is_measured = false;
     if (discontinuity && !is_retaken) {
       work.now().is_known = work.is_fixed = work.is_controlled = false;
       std::fill_n(work.rest.data(), dimension(x), Real(0));
@@ -181,18 +193,22 @@ struct TaylorSeries {
     if (!work.failure.empty()) return evaluations;
     advance(x, h, work, x_new);
     if (is_retaken) return evaluations;
-    std::fill_n(work.defect.data(), dimension(x), Real(0));
-    if (!detail::is_finite_state(x_new)) return evaluations;
+    if (!detail::is_finite_state(x_new)) {
+      std::fill_n(work.defect.data(), dimension(x), Real(0));
+      return evaluations;
+    }
     evaluations += expand(system, Real(t + h), x_new, h, work, work.next());
     if (!work.failure.empty()) return evaluations;
-    note_defect(h, work, first_coefficients<X>(work.next()), Real(Real(1) / work.next().scale));
+    work.measure = measure_of<true>(work, h, x, x_new, work.tolerance);
+    work.is_measured = true;
     if (may_have_corners<X>(system)) {
       for (const double theta : within) {
         at(Real(theta), h, work, work.point);
         evaluate(system, Real(t + Real(theta) * h), work.point, work.slope);
-        note_defect(h, work, work.slope.data(), Real(1));
+        note_defect(h, work, work.slope);
         ++evaluations;
       }
+      work.measure = measure_of<false>(work, h, x, x_new, work.tolerance);
     }
     return evaluations;
   }
@@ -207,45 +223,45 @@ struct TaylorSeries {
   template <State X>
   [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                                               const Tolerance<Scalar<X>>& tolerance) {
-    const std::array factors = last_factors(work, h);
-    const std::size_t n = dimension(x);
-    Scalar<X> sum = detail::zero_if_all_finite(x_new);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Scalar<X> part = error_of(work, factors, i) / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
-      sum += part * part;
-    }
-    return sum / number<Scalar<X>>(n);
+    if (work.is_measured && is_same(tolerance, work.tolerance)) return work.measure.error;
+    return measure_of<false>(work, h, x, x_new, tolerance).error;
   }
   /// The greatest of the defect, and of the last two terms times what `allowance` says.
   template <State X>
   [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
-    return error_of(work, last_factors(work, h), i);
+    const std::size_t n = dimension(work.rest);
+    const Scalar<X>* const before = work.now().c.data() + (work.order - 1) * n + i;
+    return error_of(before[0], before[n], work.defect.data()[i], last_factors(work, h));
   }
 
   /// The next step by the coefficients it begins with.
   template <State X>
-  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X&,
-                                             const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h,
+                                             const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     using std::abs, std::min;
     work.is_controlled = true;
     const Expansion<X>& next = work.next();
     if (!next.is_known) return factor;
-    const std::size_t n = dimension(x_new), p = work.order;
-    const Real *const before = next.c.data() + (p - 1) * n, *const last = before + n;
-    std::array<Real, 2> squares{};  // of the norms of the last two coefficients
-    for (std::size_t i = 0; i < n; ++i) {
-      const Real weight = Real(1) / tolerance.scale(i, x_new.data()[i], x_new.data()[i]);
-      const std::array<Real, 2> parts{Real(before[i] * weight), Real(last[i] * weight)};
-      for (std::size_t j = 0; j < 2; ++j) squares[j] += parts[j] * parts[j];
-    }
+    const bool is_measured = work.is_measured && is_same(tolerance, work.tolerance);
+    std::array<Real, 2> squares =
+        is_measured ? work.measure.next_terms : measure_of<false>(work, h, x, x_new, tolerance).next_terms;
+    const std::size_t p = work.order;
     for (std::size_t j = 0; j < 2; ++j) {
       const Real allowed = allowance<Real>(p, p - 1 + j);
-      squares[j] *= allowed * allowed * (Real(1) / number<Real>(n));
+      squares[j] *= allowed * allowed;
     }
     if (!detail::is_finite(Real(squares[0] + squares[1]))) return factor;
     return min(Real(greatest_factor), Real(abs(next.scale / h) * least_inverse_root(squares, 2 * (p - 1)))) *
            safety<Real>(p);
+  }
+
+  /// x at this part of the last step, by its series: what `interpolate` gives would have to be made first, and its
+  /// terms wait for one another.
+  template <State X>
+  static void at_part(const Workspace<X>& work, const Scalar<X>& h, const Scalar<X>& theta, X& x) {
+    for_sums(work, Scalar<X>(theta * h / work.now().scale),
+             [&](std::size_t i, const Scalar<X>& sum, const Scalar<X>&) { x.data()[i] = work.now().c[i] + sum; });
   }
 
   template <class System, State X>
@@ -374,15 +390,144 @@ struct TaylorSeries {
     return {before * allowance<Real>(work.order, work.order - 1),
             before * theta * allowance<Real>(work.order, work.order)};
   }
-  template <State X>
-  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const std::array<Scalar<X>, 2>& factors,
-                                          std::size_t i) {
+  template <class Real>
+  [[nodiscard]] static Real error_of(const Real& before, const Real& last, const Real& defect,
+                                     const std::array<Real, 2>& factors) {
     using std::abs;
+    return detail::greater(detail::greater(Real(abs(before) * factors[0]), Real(abs(last) * factors[1])), defect);
+  }
+
+  template <class Real>
+  [[nodiscard]] static bool is_same(const Tolerance<Real>& a, const Tolerance<Real>& b) {
+    return a.rtol == b.rtol && a.atol == b.atol && a.rtol_each == b.rtol_each && a.atol_each == b.atol_each;
+  }
+
+  /// What the parts of a measure are multiplied by.
+  template <class Real>
+  struct MeasureFactors {
+    std::array<Real, 2> terms;
+    Real defect, of_polynomial, of_slope;  // the difference of the slopes, and these, which are in units of a time
+  };
+  template <State X>
+  [[nodiscard]] static MeasureFactors<Scalar<X>> measure_factors(const Workspace<X>& work, const Scalar<X>& h) {
     using Real = Scalar<X>;
-    const std::size_t n = dimension(work.rest);
-    const Real* const c = work.now().c.data() + (work.order - 1) * n + i;
-    const Real last = detail::greater(Real(abs(c[0]) * factors[0]), Real(abs(c[n]) * factors[1]));
-    return detail::greater(last, work.defect.data()[i]);
+    return {.terms = last_factors(work, h),
+            .defect = Real(h / number<Real>(work.order + 1)),
+            .of_polynomial = Real(Real(1) / work.now().scale),
+            .of_slope = Real(Real(1) / work.next().scale)};
+  }
+
+  /// Of one component, or of `widest` side by side in a register.
+  template <class Number>
+  struct MeasureSums {
+    Number error{}, before{}, last{};  // of squares
+  };
+  /// The absolute value, by a conditional expression that registers have too.
+  template <class Number>
+  [[gnu::always_inline]] static inline void make_positive(Number& v) {
+    v = v < Number{} ? Number(-v) : v;
+  }
+
+  /// With the defect as it was noted, or noting that at the end of the step.
+  template <bool notes_defect, class Work, State X>
+  [[nodiscard]] static Measure<Scalar<X>> measure_of(Work& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                                     const Tolerance<Scalar<X>>& tolerance) {
+    using Real = Scalar<X>;
+    if constexpr (std::is_same_v<Real, double>) {
+#if defined(__x86_64__)
+      static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
+      if (is_wide) return measure_in_wide_registers<notes_defect>(work, h, x, x_new, tolerance);
+#endif
+      return measure_in_registers<notes_defect>(work, h, x, x_new, tolerance);
+    } else {
+      MeasureSums<Real> sums;
+      const MeasureFactors<Real> factors = measure_factors(work, h);
+      for (std::size_t i = 0; i < dimension(x); ++i)
+        measure_piece<notes_defect, 1>(work, factors, x, x_new, tolerance, i, sums);
+      const Real part = Real(1) / number<Real>(dimension(x));
+      return {.error = sums.error * part, .next_terms = {Real(sums.before * part), Real(sums.last * part)}};
+    }
+  }
+  using Register [[gnu::vector_size(32)]] = double;
+#if defined(__x86_64__)
+  template <bool notes_defect, class Work, State X>
+  [[gnu::target("avx2")]] static Measure<double> measure_in_wide_registers(Work& work, const double& h, const X& x,
+                                                                           const X& x_new,
+                                                                           const Tolerance<double>& tolerance) {
+    return measure_in_registers<notes_defect>(work, h, x, x_new, tolerance);
+  }
+#endif
+  template <bool notes_defect, class Work, State X>
+  [[gnu::always_inline]] static inline Measure<double> measure_in_registers(Work& work, const double& h, const X& x,
+                                                                            const X& x_new,
+                                                                            const Tolerance<double>& tolerance) {
+    MeasureSums<Register> sums;
+    const MeasureFactors<double> factors = measure_factors(work, h);
+    const auto add = [&]<std::size_t count>(std::size_t begin) __attribute__((always_inline)) {
+      measure_piece<notes_defect, count>(work, factors, x, x_new, tolerance, begin, sums);
+    };
+    const std::size_t n = dimension(x);
+    std::size_t i = 0;
+    for (; i + 4 <= n; i += 4) add.template operator()<4>(i);
+    if (n - i == 3) add.template operator()<3>(i);
+    if (n - i == 2) add.template operator()<2>(i);
+    if (n - i == 1) add.template operator()<1>(i);
+    const double part = 1 / number<double>(n);
+    const auto mean = [&](const Register& sum) { return ((sum[0] + sum[1]) + (sum[2] + sum[3])) * part; };
+    return {.error = mean(sums.error), .next_terms = {mean(sums.before), mean(sums.last)}};
+  }
+  /// The numbers that lie there; `other` in the places of a register that no component has.
+  template <std::size_t count, class Number, class Real>
+  [[gnu::always_inline]] static inline void read(Number& to, const Real* v, [[maybe_unused]] const Real& other) {
+    if constexpr (std::is_same_v<Number, Real>) {
+      to = *v;
+    } else {
+      to = Number{v[0], count > 1 ? v[1] : other, count > 2 ? v[2] : other, count > 3 ? v[3] : other};
+    }
+  }
+  template <std::size_t count, class Number, class Real>
+  [[gnu::always_inline]] static inline void write(Real* to, const Number& v) {
+    if constexpr (std::is_same_v<Number, Real>) {
+      *to = v;
+    } else {
+      for (std::size_t k = 0; k < count; ++k) to[k] = v[k];
+    }
+  }
+  /// Places of a register that no component has are such that they add 0.
+  template <bool notes_defect, std::size_t count, class Work, class Number, State X>
+  [[gnu::always_inline]] static inline void measure_piece(Work& work, const MeasureFactors<Scalar<X>>& factors,
+                                                          const X& x, const X& x_new,
+                                                          const Tolerance<Scalar<X>>& tolerance, std::size_t begin,
+                                                          MeasureSums<Number>& sums) {
+    using Real = Scalar<X>;
+    const std::size_t n = dimension(work.rest), row = (work.order - 1) * n;
+    const Real none(0), one(1), *const now = work.now().c.data() + row, *const next = work.next().c.data() + row;
+    Number before{}, last{}, next_before{}, next_last{}, from{}, to{}, defect{}, slope{};
+    read<count>(before, now + begin, none), read<count>(last, now + n + begin, none);
+    read<count>(next_before, next + begin, none), read<count>(next_last, next + n + begin, none);
+    read<count>(from, x.data() + begin, one), read<count>(to, x_new.data() + begin, one);
+    if constexpr (notes_defect) {
+      read<count>(slope, work.polynomial_slope.data() + begin, none);
+      read<count>(defect, work.next().c.data() + n + begin, none);
+      defect = factors.defect * (defect * factors.of_slope - slope * factors.of_polynomial);
+      make_positive(defect);
+      write<count>(work.defect.data() + begin, defect);
+    } else {
+      read<count>(defect, work.defect.data() + begin, none);
+    }
+    Number relative = Number{} + tolerance.rtol, absolute = Number{} + tolerance.atol;
+    if (tolerance.rtol_each) read<count>(relative, tolerance.rtol_each + begin, one);
+    if (tolerance.atol_each) read<count>(absolute, tolerance.atol_each + begin, one);
+    const Number zero_if_finite = (to - to) + (defect - defect);
+    make_positive(before), make_positive(last), make_positive(from), make_positive(to);
+    before *= factors.terms[0], last *= factors.terms[1];
+    const Number size = from > to ? from : to, term = before > last ? before : last;
+    const Number error = (term > defect ? term : defect) / (absolute + relative * size);
+    sums.error += error * error + zero_if_finite;
+    const Number weight = Real(1) / (absolute + relative * to);
+    next_before *= weight, next_last *= weight;
+    sums.before += next_before * next_before;
+    sums.last += next_last * next_last;
   }
   /// In what units of a tolerance term j is measured: the last one is to be e^-4 tolerances, that before it e^-2.
   template <class Real>
@@ -543,16 +688,15 @@ struct TaylorSeries {
     });
   }
 
-  /// The error that the defect at a part of the step stands for, where it is greater than one before: a polynomial of
-  /// order p whose first term missing is c s^(p + 1) has the defect (p + 1) c s^p.
-  /// f there is `slope` times a factor.
+  /// The error that the defect within the step stands for, where it is greater than one before: a polynomial of order p
+  /// whose first term missing is c s^(p + 1) has the defect (p + 1) c s^p.
   template <State X>
-  static void note_defect(const Scalar<X>& h, Workspace<X>& work, const Scalar<X>* slope, const Scalar<X>& of_slope) {
+  static void note_defect(const Scalar<X>& h, Workspace<X>& work, const X& slope) {
     using std::abs;
     using Real = Scalar<X>;
-    const Real factor = h / number<Real>(work.order + 1), by_scale = Real(1) / work.now().scale;
+    const MeasureFactors<Real> factors = measure_factors(work, h);
     for (std::size_t i = 0; i < dimension(work.slope); ++i) {
-      const Real error = factor * (slope[i] * of_slope - work.polynomial_slope.data()[i] * by_scale);
+      const Real error = factors.defect * (slope.data()[i] - work.polynomial_slope.data()[i] * factors.of_polynomial);
       work.defect.data()[i] = detail::greater(Real(abs(error)), work.defect.data()[i]);
     }
   }

@@ -94,7 +94,12 @@ class StepControl final : public Steps<System, X> {
     return interpolant_;
   }
   [[nodiscard]] std::span<const X> dense_output() override { return interpolant().c; }
-  void at_part(Real theta, X& x) override { interpolant()(theta, x); }
+  void at_part(Real theta, X& x) override {
+    if constexpr (requires { M::at_part(std::as_const(work_), h_, theta, x); }) {
+      if (!moved_) return M::at_part(std::as_const(work_), h_, theta, x);
+    }
+    interpolant()(theta, x);
+  }
   void at_parts(std::span<const Real, Base::parts_at_once> thetas, std::span<X, Base::parts_at_once> xs) override {
     interpolant()(thetas, xs);
   }
@@ -229,6 +234,7 @@ class StepControl final : public Steps<System, X> {
   static constexpr int parts_of_run = 50;
   static constexpr std::size_t rejects_before_settling = 4;
   static constexpr double least_off = 1e-3;  // tolerances
+  static constexpr bool sizes_its_steps = requires { requires M::sizes_its_steps; };
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
   [[nodiscard]] bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -373,7 +379,9 @@ class StepControl final : public Steps<System, X> {
   [[nodiscard]] Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights,
                                   const Options<X>& options) {
     using std::min;
-    float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
+    float factor = 1;
+    if constexpr (!sizes_its_steps)
+      factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
     if (was_rejected) factor = min(factor, 1.0F);
     if constexpr (detail::HasNextFactor<M, X, Work>) {
       const Real wanted = M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights);
