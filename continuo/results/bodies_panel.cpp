@@ -104,8 +104,7 @@ class BodiesPanel {
     }
   }
   void add_bodies() {
-    const worlds::Shapes shapes =
-        world_.is_rigid() ? worlds::shapes_of(model_, run_.plan.variables) : worlds::Shapes{};
+    const worlds::Shapes shapes = world_.is_rigid() ? worlds::shapes_of(model_, run_.plan.variables) : worlds::Shapes{};
     if (!shapes.forms.empty() && world_.bodies.size() <= most_forms) return add_forms(shapes);
     std::vector<model::NodeId> nodes;
     for (const model::BodyDescription& body : world_.bodies) nodes.push_back(body.radius);
