@@ -46,7 +46,7 @@ TEST_F(Expression, NoExpressionIsThereTwice) {
   for (int i = 0; i < 20'000; ++i) {
     // A quarter of the arguments are those of hundreds of other operations.
     const auto any = [&] {
-      if (random() % 4 == 0) return nodes[random() % 8];
+      if (random() % 4 == 0) return nodes[random() % 4];
       return nodes[nodes.size() - 1 - random() % std::min<std::size_t>(nodes.size(), 60)];
     };
     NodeId made;
