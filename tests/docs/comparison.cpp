@@ -38,7 +38,7 @@ const std::vector<Figure>& figures() {
       {"1/12.7", {"heap of 10,000"}, results, {"heap of 10,000", "fast, double"}},
       {"2.06", {"chaotic_system"}, odeint, {"chaotic_system"}},
       {"30", {"lines"}, odeint, {"harmonic_oscillator.cpp", "92"}},
-      {"**0.97**", {"machine code"}, "docs/native.md", {"outer_planets"}},
+      {"**0.82**", {"machine code"}, "docs/native.md", {"outer_planets"}},
       {"**2.36**", {"bounces"}, results, {"| dop853 | 30 |"}},
       {"1.0", {"default", "Pleiades"}, nonstiff, {"| Pleiades to t = 3 |", "(dprkn8)"}},
   };
