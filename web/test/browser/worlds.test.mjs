@@ -136,9 +136,8 @@ test("a walker walks faster while its key is held, and a car is driven back by i
   const car = await tab.evaluate(() => globalThis.continuo.session.model.bodies.names.indexOf("car"));
   await tab.keyboard.down("s");
   await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
-  await until(tab, ({ t: time }) => time > 0.9, "it drives", 30000);
-  const back = await place(car);
+  // By 3 m/s^2 of its motors; how late the key is pressed depends on the machine.
+  await tab.waitForFunction((i) => globalThis.continuo.session.frame.positions[2 * i] < -0.5, car, { timeout: 30000 });
   await tab.keyboard.up("s");
-  assert.ok(back.x < -0.5, `the car drives back: ${back.x}`);  // by 3 m/s^2 of its motors
   await picture(tab, "offroad");
 });
