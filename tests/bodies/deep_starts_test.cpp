@@ -32,11 +32,7 @@ class Numbers {
 void expect_squeezed_boxes_stay_slow(bool is_hinged, int substeps) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
-  Compound<double, 2> tray;
-  tray.parts.push_back({.shape = Box<double, 2>{{{8, 0.5}}}, .position = {{0, -2}}});
-  tray.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{-4, 2}}});
-  tray.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{4, 2}}});
-  const auto body = world.add({.shape = tray, .mass = 50, .fixed = !is_hinged});
+  const auto body = world.add({.shape = test::tray(), .mass = 50, .fixed = !is_hinged});
   ASSERT_TRUE(body);
   if (is_hinged) {
     ASSERT_TRUE(world.add_joint({.b = *body, .anchor = {{0, 0}}, .motor = JointMotor<double>{0.2, 1e5}}));

@@ -126,11 +126,7 @@ TEST(RigidHeaps, SeeAnExchangedShape) {
 TEST(RigidHeaps, KeepTheJointsBetweenThem) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
-  Compound<double, 2> tray;
-  tray.parts.push_back({.shape = Box<double, 2>{{{8, 0.5}}}, .position = {{0, -2}}});
-  tray.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{-4, 2}}});
-  tray.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{4, 2}}});
-  const auto body = world.add({.shape = tray, .mass = 50});
+  const auto body = world.add({.shape = test::tray(), .mass = 50});
   ASSERT_TRUE(body);
   const auto hinge = world.add_joint(
       {.kind = JointKind::hinge, .b = *body, .anchor = {{0, 0}}, .motor = JointMotor<double>{0.2, 1e5}});

@@ -43,6 +43,14 @@ BodyHandle add_box(World<double, Dim>& world, const Vector<double, Dim>& positio
   EXPECT_TRUE(box) << describe(box.status());
   return *box;
 }
+/// A floor between two walls, 8 wide, about its origin.
+inline Compound<double, 2> tray() {
+  Compound<double, 2> made;
+  made.parts.push_back({.shape = Box<double, 2>{{{8, 0.5}}}, .position = {{0, -2}}});
+  made.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{-4, 2}}});
+  made.parts.push_back({.shape = Box<double, 2>{{{0.5, 8}}}, .position = {{4, 2}}});
+  return made;
+}
 template <int Dim>
 void advance(FastMotion<double, Dim>& motion, int steps) {
   for (int k = 0; k < steps; ++k) {
