@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -72,11 +73,29 @@ TEST_F(Expression, NoExpressionIsThereTwice) {
   std::set<std::tuple<Op, std::uint32_t, NodeId, NodeId, NodeId, std::uint64_t>> seen;
   for (std::uint32_t i = 0; i < g.size(); ++i) {
     const Node& node = g[NodeId{i}];
-    EXPECT_TRUE(
-        seen.emplace(node.op, node.number, node.a, node.b, node.c, std::bit_cast<std::uint64_t>(node.value)).second)
+    const auto value = std::bit_cast<std::uint64_t>(g.value(NodeId{i}).value_or(0));
+    EXPECT_TRUE(seen.emplace(node.op, node.number, node.a, node.b, node.c, value).second)
         << i << " is there already: " << name(node.op);
   }
   EXPECT_GT(g.size(), 5000u);
+}
+
+// Numbers that follow each other, and numbers far from all others, first seen while the graph is small or large.
+TEST_F(Expression, AVariableIsOneNodeWhateverItsNumber) {
+  std::mt19937 random(7);
+  std::map<std::uint32_t, NodeId> made{{0, t}, {1, x}, {2, y}, {3, k}};
+  for (int i = 0; i < 20'000; ++i) {
+    const std::uint32_t beyond[] = {0, 900, 8'000, 1u << 30, 0xffffff00};
+    const std::uint32_t number = beyond[random() % std::size(beyond)] + static_cast<std::uint32_t>(random() % 256);
+    if (random() % 2 == 0) static_cast<void>(g.constant(i));
+    const NodeId variable = g.variable(number);
+    EXPECT_EQ(g[variable].op, Op::variable);
+    EXPECT_EQ(g[variable].number, number);
+    EXPECT_EQ(made.emplace(number, variable).first->second, variable) << number;
+  }
+  const std::size_t size = g.size();
+  for (const auto& [number, variable] : made) EXPECT_EQ(g.variable(number), variable) << number;
+  EXPECT_EQ(g.size(), size);
 }
 
 TEST_F(Expression, NeutralElementsVanish) {

@@ -1,6 +1,7 @@
 // continuo/symbolic/graph/expression.cpp
 // The hash table of a Graph, and walks over expressions: variables, substitution, arguments.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
@@ -26,10 +27,15 @@ struct Home {
   std::uint64_t shape, place;
 };
 
+/// Of a constant; operations have none.
+std::uint64_t bits_of(const Node& node) {
+  return node.op == Op::constant ? std::bit_cast<std::uint64_t>(node.value) : 0;
+}
+
 Home home(const Node& node) {
   if (node.op == Op::variable) return {mix(0, node.number >> 24), node.number};
   std::uint64_t shape = mix(mix(static_cast<std::uint64_t>(node.op), node.number), node.a.index);
-  shape = mix(mix(shape, node.c.index), std::bit_cast<std::uint64_t>(node.value));
+  shape = mix(mix(shape, node.c.index), bits_of(node));
   return {shape ^ (shape >> 29), node.b.index};
 }
 
@@ -38,31 +44,32 @@ std::uint64_t hash(const Node& node) {
   std::uint64_t h = mix(static_cast<std::uint64_t>(node.op), node.number);
   h = mix(h, node.a.index);
   h = mix(h, (std::uint64_t{node.b.index} << 32) | node.c.index);
-  h = mix(h, std::bit_cast<std::uint64_t>(node.value));
+  h = mix(h, bits_of(node));
   return h ^ (h >> 29);
 }
 
-bool same(const Node& p, const Node& q) {
-  return p.op == q.op && p.number == q.number && p.a == q.a && p.b == q.b && p.c == q.c &&
-         std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
+bool are_same_operation(const Node& p, const Node& q) {
+  return p.op == q.op && p.a == q.a && p.b == q.b && p.number == q.number && p.c == q.c;
 }
 
+bool are_same_leaf(const Node& p, const Node& q) {
+  return p.op == q.op && p.number == q.number && bits_of(p) == bits_of(q);
+}
+
+constexpr std::size_t operations = static_cast<std::size_t>(Op::interpolate_slope) + 1;
+
 /// The bit in Node::uses of the first argument of an operation.
+constexpr auto kinds = [] {
+  std::array<std::uint16_t, operations> bits{};
+  for (std::size_t i = 0; i < operations; ++i) bits[i] = arity(static_cast<Op>(i)) == 1 ? 32U : 64U;
+  constexpr std::array frequent = {Op::add, Op::subtract, Op::multiply, Op::divide, Op::negate};
+  for (std::size_t k = 0; k < frequent.size(); ++k)
+    bits[static_cast<std::size_t>(frequent[k])] = static_cast<std::uint16_t>(1U << k);
+  return bits;
+}();
+
 std::uint16_t kind_of(Op op) {
-  switch (op) {
-    case Op::add:
-      return 1U;
-    case Op::subtract:
-      return 2U;
-    case Op::multiply:
-      return 4U;
-    case Op::divide:
-      return 8U;
-    case Op::negate:
-      return 16U;
-    default:
-      return arity(op) == 1 ? 32U : 64U;
-  }
+  return kinds[static_cast<std::size_t>(op)];
 }
 
 /// The bit of the second.
@@ -117,10 +124,10 @@ NodeId Graph::append(const Node& node) {
   return NodeId{static_cast<std::uint32_t>(nodes_.size() - 1)};
 }
 
-NodeId Graph::intern(const Node& node) {
-  if (arity(node.op) > 0) return intern_operation(node);
+NodeId Graph::intern_leaf(const Node& node) {
   make_room(leaves_);
-  const std::size_t slot = slot_of(node, leaves_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
+  const auto is_it = [&](std::uint32_t i) { return are_same_leaf(nodes_[i], node); };
+  const std::size_t slot = slot_of(node, leaves_.slots, is_it);
   if (leaves_.slots[slot] != empty) return NodeId{leaves_.slots[slot]};
   ++leaves_.count;
   return NodeId{leaves_.slots[slot] = append(node).index};
@@ -133,23 +140,21 @@ bool Graph::has_many_uses(NodeId id) const {
 /// Of the uses of an argument, the one before this one.
 NodeId Graph::use_before(NodeId argument, NodeId use) const {
   const Node& node = nodes_[use.index];
-  return node.a == argument ? node.use_of_a_before : node.use_of_b_before;
+  return node.a == argument ? node.before.of_a : node.before.of_b;
 }
 
 NodeId Graph::find_among_uses(NodeId argument, const Node& node) const {
   NodeId use = nodes_[argument.index].latest_use;
-  while (use.valid() && !same(nodes_[use.index], node)) use = use_before(argument, use);
+  while (use.valid() && !are_same_operation(nodes_[use.index], node)) use = use_before(argument, use);
   return use;
 }
 
+/// An argument of it may have such a use.
 NodeId Graph::find_operation(const Node& node) const {
-  const std::uint16_t first = kind_of(node.op), second = as_second(first);
-  if ((nodes_[node.a.index].uses & first) == 0) return {};
-  if (node.b.valid() && (nodes_[node.b.index].uses & second) == 0) return {};
   if (!has_many_uses(node.a)) return find_among_uses(node.a, node);
   if (node.b.valid() && !has_many_uses(node.b)) return find_among_uses(node.b, node);
-  const std::size_t slot = slot_of(node, operations_.slots, [&](std::uint32_t i) { return same(nodes_[i], node); });
-  return NodeId{operations_.slots[slot]};  // not valid where it is empty
+  const auto is_it = [&](std::uint32_t i) { return are_same_operation(nodes_[i], node); };
+  return NodeId{operations_.slots[slot_of(node, operations_.slots, is_it)]};  // not valid where it is empty
 }
 
 /// One use more, before it is among the uses. Where they become many, those that are there move to the index, unless
@@ -165,18 +170,21 @@ void Graph::count_use(NodeId argument) {
 }
 
 NodeId Graph::intern_operation(const Node& node) {
-  if (const NodeId known = find_operation(node); known.valid()) return known;
-  const std::uint16_t first = kind_of(node.op);
-  const bool has_second = node.b.valid() && node.b != node.a;
+  const std::uint16_t first = kind_of(node.op), second = as_second(first);
+  const bool is_binary = node.b.valid(), has_second = is_binary && node.b != node.a;
+  if ((nodes_[node.a.index].uses & first) != 0 && (!is_binary || (nodes_[node.b.index].uses & second) != 0)) {
+    if (const NodeId known = find_operation(node); known.valid()) return known;
+  }
   count_use(node.a);
   if (has_second) count_use(node.b);
   const NodeId made = append(node);
-  Node &added = nodes_[made.index], &a = nodes_[node.a.index];
-  added.use_of_a_before = std::exchange(a.latest_use, made);
+  Node& a = nodes_[node.a.index];
+  Node::Before before{.of_a = std::exchange(a.latest_use, made)};
   a.uses |= first;
-  if (node.b.valid()) nodes_[node.b.index].uses |= as_second(first);
-  if (has_second) added.use_of_b_before = std::exchange(nodes_[node.b.index].latest_use, made);
-  if (has_many_uses(node.a) && (!node.b.valid() || has_many_uses(node.b))) {
+  if (is_binary) nodes_[node.b.index].uses |= second;
+  if (has_second) before.of_b = std::exchange(nodes_[node.b.index].latest_use, made);
+  nodes_[made.index].before = before;
+  if (has_many_uses(node.a) && (!is_binary || has_many_uses(node.b))) {
     make_room(operations_);
     enter(operations_, made.index);
   }
@@ -185,29 +193,28 @@ NodeId Graph::intern_operation(const Node& node) {
 
 NodeId Graph::constant(double value) {
   if (value == 0) value = 0;  // one zero: -0 would differ only after a division by it
-  return intern({.op = Op::constant, .finite = std::isfinite(value), .value = value});
+  return intern_leaf({.op = Op::constant, .finite = std::isfinite(value), .value = value});
 }
 
 NodeId Graph::variable(std::uint32_t number) {
-  return intern({.op = Op::variable, .finite = true, .number = number});
+  if (number < variables_.size() && variables_[number].valid()) return variables_[number];
+  return new_variable(number);
 }
 
-NodeId Graph::interpolate(std::uint32_t table, NodeId x) {
-  return intern({.op = Op::interpolate, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
+/// One that is not in its place: it may be in the index all the same, from when its number was too large for a place.
+NodeId Graph::new_variable(std::uint32_t number) {
+  const Node node{.op = Op::variable, .finite = true, .number = number, .value = 0};
+  constexpr std::size_t spare = 1024;
+  if (number >= 2 * nodes_.size() + spare) return intern_leaf(node);
+  if (number >= variables_.size()) variables_.resize(std::max<std::size_t>(number + 1, 2 * variables_.size()));
+  const auto is_it = [&](std::uint32_t i) { return are_same_leaf(nodes_[i], node); };
+  const NodeId known{leaves_.slots[slot_of(node, leaves_.slots, is_it)]};
+  return variables_[number] = known.valid() ? known : append(node);
 }
 
-NodeId Graph::interpolate_slope(std::uint32_t table, NodeId x) {
-  return intern({.op = Op::interpolate_slope, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
-}
-
-std::optional<double> Graph::value(NodeId id) const {
-  const Node& node = (*this)[id];
-  return node.op == Op::constant ? std::optional(node.value) : std::nullopt;
-}
-
-bool Graph::is(NodeId id, double value) const {
-  const Node& node = (*this)[id];
-  return node.op == Op::constant && node.value == value;
+NodeId Graph::read_table(Op op, std::uint32_t table, NodeId x) {
+  const bool finite = (*this)[x].finite;
+  return intern_operation({.op = op, .finite = finite, .corners = true, .number = table, .a = x, .before = {}});
 }
 
 std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots) {

@@ -33,6 +33,11 @@ struct NodeId {
 };
 
 struct Node {
+  /// Of an operation: the uses of its arguments before it. See Graph.
+  struct Before {
+    NodeId of_a{}, of_b{};
+  };
+
   Op op = Op::constant;
   bool finite : 1 = false;   // it cannot be infinite or NaN where the variables are not
   bool corners : 1 = false;  // it, or what it is made of, has jumps or kinks that no `smooth` stands around
@@ -43,8 +48,10 @@ struct Node {
   std::uint32_t number = 0;  // of a variable, or of a table
   NodeId a{}, b{}, c{};      // as many as arity(op)
   NodeId latest_use{};
-  double value = 0;                             // of a constant
-  NodeId use_of_a_before{}, use_of_b_before{};  // of an operation: the uses of its arguments before it
+  union {              // a grid has millions of nodes: half a line of the cache each
+    double value = 0;  // of a constant
+    Before before;     // of an operation
+  };
 };
 
 /// Owns the nodes. An operation is looked for among the uses of an argument that has few, else in an index of those
@@ -62,8 +69,10 @@ class Graph {
   [[nodiscard]] NodeId apply(Op op, NodeId a);
   [[nodiscard]] NodeId apply(Op op, NodeId a, NodeId b);
   [[nodiscard]] NodeId select(NodeId condition, NodeId if_true, NodeId if_false);
-  [[nodiscard]] NodeId interpolate(std::uint32_t table, NodeId x);
-  [[nodiscard]] NodeId interpolate_slope(std::uint32_t table, NodeId x);
+  [[nodiscard]] NodeId interpolate(std::uint32_t table, NodeId x) { return read_table(Op::interpolate, table, x); }
+  [[nodiscard]] NodeId interpolate_slope(std::uint32_t table, NodeId x) {
+    return read_table(Op::interpolate_slope, table, x);
+  }
 
   [[nodiscard]] NodeId add(NodeId a, NodeId b) { return apply(Op::add, a, b); }
   [[nodiscard]] NodeId subtract(NodeId a, NodeId b) { return apply(Op::subtract, a, b); }
@@ -82,8 +91,14 @@ class Graph {
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
 
   /// The number this node is, if it is one.
-  [[nodiscard]] std::optional<double> value(NodeId id) const;
-  [[nodiscard]] bool is(NodeId id, double value) const;
+  [[nodiscard]] std::optional<double> value(NodeId id) const {
+    const Node& node = (*this)[id];
+    return node.op == Op::constant ? std::optional(node.value) : std::nullopt;
+  }
+  [[nodiscard]] bool is(NodeId id, double value) const {
+    const Node& node = (*this)[id];
+    return node.op == Op::constant && node.value == value;
+  }
 
  private:
   friend struct Simplifier;
@@ -93,8 +108,10 @@ class Graph {
     std::size_t count = 0;  // of the nodes in it
   };
 
-  [[nodiscard]] NodeId intern(const Node& node);
+  [[nodiscard]] NodeId intern_leaf(const Node& node);
   [[nodiscard]] NodeId intern_operation(const Node& node);
+  [[nodiscard]] NodeId read_table(Op op, std::uint32_t table, NodeId x);
+  [[nodiscard]] NodeId new_variable(std::uint32_t number);
   [[nodiscard]] NodeId find_operation(const Node& node) const;
   [[nodiscard]] NodeId find_among_uses(NodeId argument, const Node& node) const;
   [[nodiscard]] NodeId use_before(NodeId argument, NodeId use) const;
@@ -105,7 +122,8 @@ class Graph {
   void enter(Index& index, std::uint32_t node);
 
   std::vector<Node> nodes_;
-  Index leaves_, operations_;  // constants and variables; operations whose arguments all have many uses
+  std::vector<NodeId> variables_;  // by their numbers, as far as these are not many more than the nodes
+  Index leaves_, operations_;      // constants and other variables; operations whose arguments all have many uses
 };
 
 /// The arguments of a node, arity(op) of them: `for (const NodeId a : arguments(node))`.

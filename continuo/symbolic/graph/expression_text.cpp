@@ -109,7 +109,8 @@ struct Printer {
         text += name(n.number);
         return;
       case Op::negate:
-        if (g[n.a].op == Op::subtract) return infix({.op = Op::subtract, .a = g[n.a].b, .b = g[n.a].a}, mine, depth);
+        if (g[n.a].op == Op::subtract)
+          return infix({.op = Op::subtract, .a = g[n.a].b, .b = g[n.a].a, .before = {}}, mine, depth);
         text += '-';
         return print(n.a, binds_product, depth);
       case Op::logical_not:

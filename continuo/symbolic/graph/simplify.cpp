@@ -1,6 +1,8 @@
 // continuo/symbolic/graph/simplify.cpp
 // The makers of Graph: what an operation on given arguments becomes before it is looked up among the nodes.
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include <continuo/symbolic/graph/expression.hpp>
@@ -9,7 +11,7 @@ namespace continuo::model {
 
 namespace {
 
-bool stays_finite(Op op) {
+constexpr bool is_finite_of_finite(Op op) {
   switch (op) {
     case Op::add:
     case Op::subtract:
@@ -37,6 +39,17 @@ bool stays_finite(Op op) {
   }
 }
 
+/// What make() asks of each operation.
+struct Traits {
+  bool stays_finite, has_corners;
+};
+constexpr auto traits = [] {
+  std::array<Traits, static_cast<std::size_t>(Op::interpolate_slope) + 1> all{};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = {is_finite_of_finite(static_cast<Op>(i)), has_corners(static_cast<Op>(i))};
+  return all;
+}();
+
 bool is_power_of_two(double value) {
   int exponent = 0;
   return std::abs(std::frexp(value, &exponent)) == 0.5 && exponent > -1000 && exponent < 1000;
@@ -57,15 +70,18 @@ struct Simplifier {
   bool vanishes(NodeId factor, NodeId other) const { return is(factor, 0) && g[other].finite; }
 
   NodeId make(Op what, NodeId a, NodeId b = {}, NodeId c = {}) const {
-    Node node{.op = what, .a = a, .b = b, .c = c};
-    node.finite = stays_finite(what) || (what == Op::divide && is_constant(b) && !is(b, 0));
-    node.corners = has_corners(what);
-    for (const NodeId argument : arguments(node)) {
-      node.finite = node.finite && g[argument].finite;
-      node.corners = node.corners || g[argument].corners;
-    }
-    if (what == Op::smooth) node.corners = false;
-    return g.intern(node);
+    const Traits& of_operation = traits[static_cast<std::size_t>(what)];
+    bool finite = of_operation.stays_finite || (what == Op::divide && is_constant(b) && !is(b, 0));
+    bool corners = of_operation.has_corners;
+    const auto take = [&](const Node& argument) {
+      finite = finite && argument.finite;
+      corners = corners || argument.corners;
+    };
+    take(g[a]);
+    if (b.valid()) take(g[b]);
+    if (c.valid()) take(g[c]);
+    if (what == Op::smooth) corners = false;
+    return g.intern_operation({.op = what, .finite = finite, .corners = corners, .a = a, .b = b, .c = c, .before = {}});
   }
 
   /// Sums of squares and their like: known without looking far.

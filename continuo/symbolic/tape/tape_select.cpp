@@ -201,7 +201,7 @@ class Selector {
 
   Selected negation(NodeId id, const Node& n) const {
     const Node& a = graph_[n.a];
-    if (folds(n.a, id, Op::subtract)) return difference(id, {.op = Op::subtract, .a = a.b, .b = a.a});
+    if (folds(n.a, id, Op::subtract)) return difference(id, {.op = Op::subtract, .a = a.b, .b = a.a, .before = {}});
     if (folds(n.a, id, Op::add)) return negated(terms(id, a, of_sum));
     if (folds(n.a, id, Op::multiply)) {
       const Selected s = product(id, a);

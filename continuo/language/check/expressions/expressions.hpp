@@ -53,7 +53,6 @@ struct Workspace {
   StateUnits units{*this};
   std::vector<double> registers{};        // parameters and inputs as written, the rest 0
   std::vector<Measured> unknown_units{};  // by number, as their guesses state them
-  std::vector<NodeId> state_nodes{};      // of each state, once an expression has named it
   std::vector<NodeId> solved{};           // highest derivative of each base where the model has one mode; empty before
   std::size_t written_out = 0;            // members of families and terms of sums so far
   std::deque<Index> kept_indices{};       // of the statements that stand in families

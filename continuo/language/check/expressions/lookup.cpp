@@ -253,9 +253,8 @@ Value Lookup::derivative(const ast::Name& name, std::size_t index, Scope& scope)
   const Base& base = workspace_.declared.bases[index];
   if (name.primes < base.order) {
     const std::size_t state = base.first + static_cast<std::size_t>(name.primes);
-    NodeId& node = workspace_.state_nodes[state];
-    if (!node.valid()) node = workspace_.graph.variable(workspace_.layout.states + static_cast<std::uint32_t>(state));
-    return {node, workspace_.units.of(index, name.primes, scope.depth)};
+    return {workspace_.graph.variable(workspace_.layout.states + static_cast<std::uint32_t>(state)),
+            workspace_.units.of(index, name.primes, scope.depth)};
   }
   if (base.is_measure && base.family != "world") {
     report_.fail("E226", name.span, fmt::format("`{}` follows from the bodies", base.name),

@@ -62,7 +62,6 @@ void make_room(Workspace& workspace) {
   const Layout& layout = workspace.layout;
   workspace.registers.assign(layout.size, 0.0);
   workspace.units.reserve(layout.unknowns - layout.states);
-  workspace.state_nodes.resize(layout.unknowns - layout.states);
   workspace.unknown_units.resize(workspace.declared.unknowns.size(), Measured::unknown());
 }
 
@@ -75,14 +74,14 @@ std::vector<State> name_states(Expressions& expressions) {
     for (int k = 0; k < base.order; ++k) {
       const auto variable = workspace.layout.states + static_cast<std::uint32_t>(states.size());
       if (k > 0) hold_to_chain(expressions, b, k);
-      states.push_back({.base = base.name,
-                        .primes = k,
-                        .column = with_primes(base.name, k),
-                        .variable = variable,
-                        .unit = unit_or_nothing(workspace.units.of(b, k)),
-                        .initial = NodeId{},
-                        .span = base.span,
-                        .in_world = base.in_world});
+      State& state = states.emplace_back();
+      state.base = base.name;
+      state.primes = k;
+      state.column = k == 0 ? base.name : with_primes(base.name, k);
+      state.variable = variable;
+      state.unit = unit_or_nothing(workspace.units.of(b, k));
+      state.span = base.span;
+      state.in_world = base.in_world;
     }
   }
   return states;
