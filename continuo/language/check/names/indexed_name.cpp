@@ -11,8 +11,8 @@ std::string indexed(std::string_view name, std::span<const long> indices) {
   std::string text(name);
   std::array<char, 24> digits;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    text += i == 0 ? '[' : ',';
-    text.append(digits.data(), std::to_chars(digits.begin(), digits.end(), indices[i]).ptr);
+    digits.front() = i == 0 ? '[' : ',';
+    text.append(digits.data(), std::to_chars(digits.begin() + 1, digits.end(), indices[i]).ptr);
   }
   if (!indices.empty()) text += ']';
   return text;

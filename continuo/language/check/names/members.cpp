@@ -14,10 +14,10 @@ constexpr std::size_t outside = static_cast<std::size_t>(-1);
 std::size_t place_in(const std::vector<long>& low, const std::vector<long>& size, std::span<const long> indices) {
   if (indices.size() != low.size()) return outside;
   std::size_t place = 0;
-  for (std::size_t i = 0; i < low.size(); ++i) {
-    const long at = indices[i] - low[i];
-    if (at < 0 || at >= size[i]) return outside;
-    place = place * static_cast<std::size_t>(size[i]) + static_cast<std::size_t>(at);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto at = static_cast<std::size_t>(indices[i] - low[i]), end = static_cast<std::size_t>(size[i]);
+    if (at >= end) return outside;  // also what lies below, which is a huge number here
+    place = place * end + at;
   }
   return place;
 }
@@ -32,12 +32,20 @@ void next_cell(const std::vector<long>& low, const std::vector<long>& size, std:
 
 }  // namespace
 
-std::uint32_t Members::number_of(std::span<const long> indices) const {
-  const std::size_t place = box_.cells.empty() ? outside : place_in(box_.low, box_.size, indices);
+/// `outside` where the box does not reach.
+std::size_t Members::place_of(std::span<const long> indices) const {
+  return box_.cells.empty() ? outside : place_in(box_.low, box_.size, indices);
+}
+
+std::uint32_t Members::number_at(std::size_t place, std::span<const long> indices) const {
   if (place != outside && box_.cells[place] != none) return box_.cells[place];
   if (scattered_.empty()) return none;
   const auto found = scattered_.find({indices.begin(), indices.end()});
   return found == scattered_.end() ? none : found->second;
+}
+
+std::uint32_t Members::number_of(std::span<const long> indices) const {
+  return number_at(place_of(indices), indices);
 }
 
 const Symbol* Members::find(std::span<const long> indices) const {
@@ -46,21 +54,23 @@ const Symbol* Members::find(std::span<const long> indices) const {
 }
 
 std::pair<const Symbol*, bool> Members::add(std::span<const long> indices, const Symbol& symbol) {
-  if (const Symbol* known = find(indices)) return {known, false};
-  cell_for(indices) = static_cast<std::uint32_t>(symbols_.size());
+  const std::size_t place = place_of(indices);
+  const std::uint32_t known = number_at(place, indices);
+  if (known != none) return {&symbols_[known], false};
+  (place == outside ? new_cell(indices) : box_.cells[place]) = static_cast<std::uint32_t>(symbols_.size());
   symbols_.push_back(symbol);
   return {&symbols_.back(), true};
 }
 
-std::uint32_t& Members::cell_for(std::span<const long> indices) {
+/// Of a member outside the box.
+std::uint32_t& Members::new_cell(std::span<const long> indices) {
   if (box_.cells.empty()) {
     box_.low.assign(indices.begin(), indices.end());
     box_.size.assign(indices.size(), 1);
     box_.cells.assign(1, none);
+    return box_.cells.front();
   }
-  std::size_t place = place_in(box_.low, box_.size, indices);
-  if (place == outside && widen(indices)) place = place_in(box_.low, box_.size, indices);
-  return place == outside ? scattered_[{indices.begin(), indices.end()}] : box_.cells[place];
+  return widen(indices) ? box_.cells[place_of(indices)] : scattered_[{indices.begin(), indices.end()}];
 }
 
 /// By half its size at least, so that the cells are moved a few times only; false where most would be empty.
@@ -77,6 +87,11 @@ bool Members::widen(std::span<const long> indices) {
     volume *= static_cast<double>(high - low);
   }
   if (volume > 64 + 8 * static_cast<double>(symbols_.size())) return false;
+  if (wider.low == box_.low && std::equal(box_.size.begin() + 1, box_.size.end(), wider.size.begin() + 1)) {
+    box_.size = std::move(wider.size);  // longer by whole rows: no cell is moved
+    box_.cells.resize(static_cast<std::size_t>(volume), none);
+    return true;
+  }
   wider.cells.assign(static_cast<std::size_t>(volume), none);
   std::vector<long> at = box_.low;
   for (const std::uint32_t cell : box_.cells) {

@@ -32,7 +32,9 @@ class Members {
     std::vector<std::uint32_t> cells{};  // the last index runs fastest
   };
 
-  [[nodiscard]] std::uint32_t& cell_for(std::span<const long> indices);
+  [[nodiscard]] std::size_t place_of(std::span<const long> indices) const;
+  [[nodiscard]] std::uint32_t number_at(std::size_t place, std::span<const long> indices) const;
+  [[nodiscard]] std::uint32_t& new_cell(std::span<const long> indices);
   [[nodiscard]] bool widen(std::span<const long> indices);
 
   std::vector<Symbol> symbols_;

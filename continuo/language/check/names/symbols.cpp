@@ -28,6 +28,19 @@ bool is_free_name(std::string_view name, Span span, Report& report) {
   return false;
 }
 
+void widen(FamilyShape& shape, std::span<const long> indices, Symbol::Kind kind) {
+  if (shape.low.empty()) {
+    shape.low.assign(indices.begin(), indices.end());
+    shape.high = shape.low;
+    shape.kind = kind;
+    shape.dimensions = indices.size();
+  }
+  for (std::size_t i = 0; i < std::min(indices.size(), shape.low.size()); ++i) {
+    shape.low[i] = std::min(shape.low[i], indices[i]);
+    shape.high[i] = std::max(shape.high[i], indices[i]);
+  }
+}
+
 }  // namespace
 
 std::string_view meaning_of_its_own(std::string_view name) {
@@ -54,19 +67,16 @@ bool Symbols::declare(std::string_view name, std::span<const long> indices, int 
     }
     return false;
   }
-  const auto found = families_.find(name);
-  FamilyShape& shape = found == families_.end() ? families_[std::string(name)] : found->second;
-  if (shape.low.empty()) {
-    shape.low.assign(indices.begin(), indices.end());
-    shape.high = shape.low;
-    shape.kind = symbol.kind;
-    shape.dimensions = indices.size();
-  }
-  for (std::size_t i = 0; i < std::min(indices.size(), shape.low.size()); ++i) {
-    shape.low[i] = std::min(shape.low[i], indices[i]);
-    shape.high[i] = std::max(shape.high[i], indices[i]);
-  }
+  widen(shape_of(name), indices, symbol.kind);
   return true;
+}
+
+FamilyShape& Symbols::shape_of(std::string_view name) {
+  if (recent_shape_.shape && recent_shape_.name == name) return *recent_shape_.shape;
+  auto found = families_.find(name);
+  if (found == families_.end()) found = families_.try_emplace(std::string(name)).first;
+  recent_shape_ = {found->first, &found->second};
+  return found->second;
 }
 
 const Members* Symbols::members_in(std::size_t place, std::string_view name) const {

@@ -52,6 +52,7 @@ class Symbols {
   using Names = std::unordered_map<std::string, Members, Hash, std::equal_to<>>;
 
   [[nodiscard]] const Members* members_in(std::size_t place, std::string_view name) const;
+  [[nodiscard]] FamilyShape& shape_of(std::string_view name);
 
   /// The family that was asked for last: the members of a grid ask for theirs one after the other.
   struct Recent {
@@ -59,8 +60,14 @@ class Symbols {
     std::string_view name{};
     const Members* members = nullptr;
   };
+  /// The one that was given a member last.
+  struct RecentShape {
+    std::string_view name{};
+    FamilyShape* shape = nullptr;
+  };
 
   mutable Recent recent_;
+  RecentShape recent_shape_;
   std::vector<Names> names_;  // of the model, then of its modes; a name without indices is its family's only member
   std::map<std::string, FamilyShape, std::less<>> families_;
   std::unordered_map<std::string, Symbol> made_by_world_;

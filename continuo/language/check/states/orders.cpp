@@ -67,19 +67,19 @@ std::optional<std::size_t> StateOrders::see_base(const ast::Name& name, Scope& s
     }
     return std::nullopt;
   }
+  const std::size_t index = known ? known->index : declared_.bases.size();
   if (!known) {
-    const Symbol symbol{Symbol::Kind::base, declared_.bases.size(), name.span};
+    const Symbol symbol{Symbol::Kind::base, index, name.span};
     if (!declared_.symbols.declare(name.text, indexed_name->indices, Scope::no_mode, symbol, report_))
       return std::nullopt;
     declared_.bases.push_back({indexed_name->text(), name.text, 0, 0, name.span});
-    known = declared_.symbols.find(*indexed_name, Scope::no_mode);
   }
-  Base& base = declared_.bases[known->index];
+  Base& base = declared_.bases[index];
   if (order > base.order) {
     base.order = order;
     base.span = name.span;
   }
-  return known->index;
+  return index;
 }
 
 void StateOrders::see_primes(const ast::Expression& expression, Scope& scope) {
