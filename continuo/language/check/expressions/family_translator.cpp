@@ -103,8 +103,11 @@ Value FamilyTranslator::translate_path(const Expressions& expressions, const ast
   const bool holds_highest = scope.highest && scope.highest->size() != highest;
   if (holds_highest) scope.highest->resize(highest);
   if (!node.valid() || holds_highest) return expressions.translator.translate(text, scope);
-  const auto path = std::ranges::find(paths_, choices_, &Path::choices);
-  if (path != paths_.end()) return {.node = node, .measured = path->measured};
+  if (recent_path_ >= paths_.size() || paths_[recent_path_].choices != choices_) {
+    const auto path = std::ranges::find(paths_, choices_, &Path::choices);
+    recent_path_ = static_cast<std::size_t>(path - paths_.begin());
+  }
+  if (recent_path_ < paths_.size()) return {.node = node, .measured = paths_[recent_path_].measured};
   Value value = expressions.translator.translate(text, scope);
   if (value.bad) return value;
   if (value.node == node && !value.condition && (!scope.highest || scope.highest->size() == highest)) {
@@ -118,8 +121,9 @@ Value FamilyTranslator::translate_path(const Expressions& expressions, const ast
 void FamilyTranslator::note_indices(const Scope& scope) {
   std::size_t d = 0;
   for (const Index* index = scope.innermost; index; index = index->outer, ++d) {
-    if (values_[d] == index->value && changes_[d] > 0) continue;
-    values_[d] = index->value;
+    const auto value = static_cast<double>(index->value);
+    if (values_[d] == value && changes_[d] > 0) continue;
+    values_[d] = value;
     ++changes_[d];
   }
 }
@@ -135,6 +139,7 @@ std::uint64_t FamilyTranslator::stamp_of(std::uint32_t depends) const {
 // -- reading ----------------------------------------------------------------------------------------------------------
 
 FamilyTranslator::Part FamilyTranslator::add(Node node) {
+  node.is_by_value = node.is_of_numbers && std::has_single_bit(node.depends);
   nodes_.push_back(std::move(node));
   return static_cast<Part>(nodes_.size() - 1);
 }
@@ -245,10 +250,7 @@ std::optional<FamilyTranslator::Part> FamilyTranslator::read(const Expressions& 
   const auto no = yes ? read(expressions, *text.when_false, scope) : yes;
   if (!no) return std::nullopt;
   node.parts = {*yes, *no};
-  for (const Sum& side : node.sides)
-    for (std::size_t d = 0; d < names_.size(); ++d)
-      if (side.factors[d] != 0) node.depends |= 1u << d;
-  node.depends |= nodes_[*yes].depends | nodes_[*no].depends;
+  node.depends = left->depends | right->depends | nodes_[*yes].depends | nodes_[*no].depends;
   return add(std::move(node));
 }
 
@@ -274,6 +276,7 @@ std::optional<FamilyTranslator::Sum> FamilyTranslator::read_sum(const Expression
     const auto index = index_called(*name);
     if (!index) return std::nullopt;
     sum.factors[*index] = 1;
+    sum.depends = 1u << *index;
     return sum;
   }
   const auto* binary = std::get_if<ast::Binary>(&text.node);
@@ -283,7 +286,10 @@ std::optional<FamilyTranslator::Sum> FamilyTranslator::read_sum(const Expression
   if (!right) return std::nullopt;
   const double sign = binary->op == ast::BinaryOperator::add ? 1 : -1;
   sum.number = left->number + sign * right->number;
-  for (std::size_t d = 0; d < most_indices; ++d) sum.factors[d] = left->factors[d] + sign * right->factors[d];
+  for (std::size_t d = 0; d < most_indices; ++d) {
+    sum.factors[d] = left->factors[d] + sign * right->factors[d];
+    if (sum.factors[d] != 0) sum.depends |= 1u << d;
+  }
   // Where all are whole, the order of the terms does not matter.
   if (sum.number != std::floor(sum.number) || std::abs(sum.number) > 1e9) return std::nullopt;
   return sum;
@@ -299,11 +305,12 @@ NodeId FamilyTranslator::make(const Expressions& expressions, Part part, Scope& 
     if (yes) choices_ |= std::uint64_t{1} << node.number;
     return make(expressions, node.parts[yes ? 0 : 1], scope);
   }
+  if (node.is_by_value) return make_by_value(expressions, node, scope);
+  if ((node.depends & 1u) != 0) return make_anew(expressions, node, scope);  // no member has that of the one before
   const std::uint64_t stamp = stamp_of(node.depends);
   if (node.stamp != stamp) {
     const std::uint64_t before = std::exchange(choices_, 0);
-    node.node = node.is_of_numbers && std::has_single_bit(node.depends) ? make_by_value(expressions, node, scope)
-                                                                        : make_anew(expressions, node, scope);
+    node.node = make_anew(expressions, node, scope);
     node.stamp = node.node.valid() ? stamp : 0;
     node.choices = std::exchange(choices_, before);
   }
@@ -314,7 +321,7 @@ NodeId FamilyTranslator::make(const Expressions& expressions, Part part, Scope& 
 /// What one index alone decides is made once for each of its values, however often the other indices go round.
 NodeId FamilyTranslator::make_by_value(const Expressions& expressions, Node& node, Scope& scope) {
   constexpr long most = 1'000'000;
-  const long value = values_[static_cast<std::size_t>(std::countr_zero(node.depends))];
+  const auto value = static_cast<long>(values_[static_cast<std::size_t>(std::countr_zero(node.depends))]);
   if (node.by_value.empty()) node.first_value = value;
   const long place = value - node.first_value;
   if (place < 0 || place >= most) return make_anew(expressions, node, scope);
@@ -327,7 +334,7 @@ NodeId FamilyTranslator::make_by_value(const Expressions& expressions, Node& nod
 
 NodeId FamilyTranslator::make_anew(const Expressions& expressions, Node& node, Scope& scope) {
   Graph& g = expressions.workspace.graph;
-  if (node.kind == Node::Kind::index) return g.constant(static_cast<double>(values_[node.number]));
+  if (node.kind == Node::Kind::index) return g.constant(values_[node.number]);
   if (node.kind == Node::Kind::name) return make_name(expressions, node, scope);
   const NodeId a = make(expressions, node.parts[0], scope);
   if (!a.valid()) return a;
@@ -386,7 +393,10 @@ std::size_t FamilyTranslator::states_of(const Members& members, int primes) {
 
 double FamilyTranslator::value_of(const Sum& sum) const {
   double value = sum.number;
-  for (std::size_t d = 0; d < names_.size(); ++d) value += sum.factors[d] * static_cast<double>(values_[d]);
+  for (std::uint32_t left = sum.depends; left != 0; left &= left - 1) {
+    const auto d = static_cast<std::size_t>(std::countr_zero(left));
+    value += sum.factors[d] * values_[d];
+  }
   return value;
 }
 

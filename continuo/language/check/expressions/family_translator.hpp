@@ -25,19 +25,21 @@ class FamilyTranslator {
   static constexpr std::size_t most_indices = 8, most_choices = 64;
   using Part = std::uint32_t;
 
-  /// number + the sum of factors[d]*(the index d families out).
+  /// number + the sum of factors[d]*(the index d families out) over the bits d of `depends`.
   struct Sum {
     double number = 0;
+    std::uint32_t depends = 0;
     std::array<double, most_indices> factors{};
   };
   struct Node {
     enum class Kind : unsigned char { fixed, index, name, negation, operation, function, choice };
     Kind kind = Kind::fixed;
     bool is_of_numbers = false;  // it has neither names with indices nor choices
+    bool is_by_value = false;    // and one index decides it
     Op op{};
     ast::BinaryOperator comparison{};  // of `choice`
     std::uint32_t depends = 0;         // on indices: bit d is that of the index d families out
-    std::uint64_t stamp = 0;           // when `node` was made
+    std::uint64_t stamp = 0;           // when `node` was made; not of what the innermost index decides
     std::uint64_t choices = 0;         // made on the way
     NodeId node{};
     std::array<Part, 2> parts{};
@@ -98,7 +100,7 @@ class FamilyTranslator {
   std::size_t members_ = 0;
   bool is_given_up_ = false, is_busy_ = false;  // busy: a text that asks for another one
   std::vector<std::string_view> names_;         // of indices, the innermost first
-  std::array<long, most_indices> values_{};
+  std::array<double, most_indices> values_{};
   std::array<std::uint64_t, most_indices> changes_{};  // of each value so far
   std::vector<Node> nodes_;
   std::vector<States> states_;
@@ -106,6 +108,7 @@ class FamilyTranslator {
   std::size_t choice_count_ = 0;
   std::uint64_t choices_ = 0;  // of the member at hand
   std::vector<Path> paths_;
+  std::size_t recent_path_ = 0;  // of the member before
 };
 
 }  // namespace continuo::model::detail
