@@ -139,6 +139,7 @@ void Equations::count_algebraic(std::size_t algebraic) const {
 void Equations::solve_one_by_one(ModeAtWork& work) {
   std::unordered_map<std::uint32_t, std::vector<std::size_t>> users;  // equations that hold others beside this one
   std::vector<std::size_t> ready;
+  ready.reserve(work.equations.size());
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
     equation.open = equation.holds;

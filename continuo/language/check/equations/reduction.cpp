@@ -9,6 +9,7 @@ namespace continuo::model::detail {
 /// The derivative of x is x' in the units of x, of x' it is x'', and so on up to what the equations say.
 std::vector<NodeId> reduce(const std::vector<NodeId>& highest, Workspace& workspace) {
   std::vector<NodeId> derivatives;
+  derivatives.reserve(workspace.layout.unknowns - workspace.layout.states);
   for (std::size_t b = 0; b < workspace.declared.bases.size(); ++b) {
     const Base& base = workspace.declared.bases[b];
     for (int k = 0; k + 1 < base.order; ++k) {

@@ -1,5 +1,7 @@
 // continuo/language/check/expressions/state_units.cpp
 // Units of states come from their conditions, and through those of their chain, x, x', ...
+#include <utility>
+
 #include <continuo/language/check/expressions/expressions.hpp>
 
 namespace continuo::model::detail {
@@ -17,13 +19,21 @@ ConditionValues::Entry& ConditionValues::of(const Expressions& expressions, std:
   entry.progress = Progress::busy;
   const ast::Condition& text = *conditions[index].text;
   Scope scope = conditions[index].scope;
-  scope.samples = &entry.samples;
+  std::vector<Sample> samples;
+  scope.samples = &samples;
   scope.moment = &text.time;
   scope.depth = depth;
   entry.value = members_.translate(expressions, text.value, scope);
   expressions.operations.want_number(text.value, entry.value);
+  if (!samples.empty()) samples_.emplace(index, std::move(samples));
   entry.progress = Progress::done;
   return entry;
+}
+
+const std::vector<Sample>& ConditionValues::samples_of(std::size_t condition) const {
+  static const std::vector<Sample> none;
+  const auto found = samples_.find(condition);
+  return found == samples_.end() ? none : found->second;
 }
 
 void ConditionValues::find_all() {

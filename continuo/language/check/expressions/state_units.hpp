@@ -2,6 +2,7 @@
 // Conditions, `x(0) = 3 [m]`, each translated when it is first asked for; and the units of states, which they state.
 #pragma once
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include <continuo/language/check/expressions/family_translator.hpp>
@@ -16,7 +17,6 @@ class ConditionValues {
  public:
   struct Entry {
     Value value{};
-    std::vector<Sample> samples{};  // `x(10)` in the value
     Progress progress = Progress::untouched;
   };
 
@@ -25,13 +25,17 @@ class ConditionValues {
   /// `depth`: of the expression that asks.
   Entry& of(std::size_t condition, std::size_t depth = 0);
   void find_all();
-  [[nodiscard]] const std::vector<Entry>& all() const { return entries_; }
+  /// `x(10)` in the value of a condition that has been found: few have any.
+  [[nodiscard]] const std::vector<Sample>& samples_of(std::size_t condition) const;
+  /// By condition.
+  [[nodiscard]] const std::map<std::size_t, std::vector<Sample>>& samples() const { return samples_; }
 
  private:
   Entry& of(const Expressions& expressions, std::size_t condition, std::size_t depth);
 
   Workspace& workspace_;
   std::vector<Entry> entries_;
+  std::map<std::size_t, std::vector<Sample>> samples_;
   FamilyTranslator members_;
 };
 

@@ -1,6 +1,7 @@
 // continuo/language/check/states/initial_values.cpp
 // Conditions at the start are initial values; once one stands elsewhere all are boundary values.
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <set>
 
@@ -23,15 +24,16 @@ InitialValues::InitialValues(Expressions& expressions, std::vector<State>& state
 
 BoundaryProblem InitialValues::make() {
   bool all_at_start = true;
-  times_.reserve(declared_.conditions.size());
   const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
   for (std::size_t i = 0; i < declared_.conditions.size(); ++i) {
-    const auto& time = times_.emplace_back(time_of(declared_.conditions[i]));
+    const std::optional<Setting>& time = find_time(i);
     if (time && is_elsewhere(*time)) all_at_start = false;
-    if (std::ranges::any_of(expressions_.workspace.conditions.of(i).samples, is_elsewhere, &Sample::when))
+    if (std::ranges::any_of(expressions_.workspace.conditions.samples_of(i), is_elsewhere, &Sample::when))
       all_at_start = false;
   }
-  for (std::size_t i = 0; i < declared_.conditions.size(); ++i) place_condition(i, all_at_start);
+  std::size_t next = 0;
+  for (const Time& time : times_)
+    for (; next < time.end; ++next) place_condition(next, time.time, all_at_start);
   if (all_at_start) {
     missing_conditions();
     solve_starts(expressions_, states_, start_time_);
@@ -43,20 +45,24 @@ BoundaryProblem InitialValues::make() {
 }
 
 /// A number, as in u[i](0) = ..., is the same for all members of a family.
-std::optional<Setting> InitialValues::time_of(const ConditionText& condition) {
-  const std::size_t index = times_.size();
+const std::optional<Setting>& InitialValues::find_time(std::size_t index) {
+  const ConditionText& condition = declared_.conditions[index];
   const bool is_number = std::holds_alternative<ast::Number>(condition.text->time.node);
-  if (is_number && index > 0 && times_.back() && declared_.conditions[index - 1].text == condition.text)
-    return times_.back();
+  if (is_number && index > 0 && times_.back().time && declared_.conditions[index - 1].text == condition.text) {
+    times_.back().end = index + 1;
+    return times_.back().time;
+  }
   Scope scope = condition.scope;
-  return expressions_.values.time_setting(condition.text->time, scope, "the time of a condition");
+  times_.push_back(
+      {index + 1, expressions_.values.time_setting(condition.text->time, scope, "the time of a condition")});
+  return times_.back().time;
 }
 
 /// Where the state has a value at this time first, and whether that is here.
 std::pair<Span, bool> InitialValues::see(std::size_t state, double time, Span span) {
   Seen& first = seen_[state];
-  if (!first.is_set) {
-    first = {time, span, true};
+  if (std::isnan(first.time)) {
+    first = {time, span};
     return {span, true};
   }
   if (first.time == time) return {first.span, false};
@@ -74,10 +80,10 @@ void InitialValues::count_conditions() const {
                fmt::format("here are {}", made_.conditions.size()));
 }
 
-void InitialValues::place_condition(std::size_t index, bool initial) {
+void InitialValues::place_condition(std::size_t index, const std::optional<Setting>& time, bool initial) {
   const ConditionText& condition = declared_.conditions[index];
-  const std::optional<Setting>& time = times_[index];
-  const ConditionValues::Entry& entry = expressions_.workspace.conditions.of(index);
+  const Value& value = expressions_.workspace.conditions.of(index).value;
+  const std::vector<Sample>& samples = expressions_.workspace.conditions.samples_of(index);
   const Base& base = declared_.bases[condition.base];
   const int primes = condition.text->name.primes;
   if (primes >= base.order) {
@@ -89,7 +95,6 @@ void InitialValues::place_condition(std::size_t index, bool initial) {
     return;
   }
   const std::size_t state = base.first + static_cast<std::size_t>(primes);
-  const Value& value = entry.value;
   const auto stands_alone = [&] {
     return expressions_.values.only_parameters(value.node, condition.text->value.span, "a condition at several times",
                                                "name what changes with a time, as in x(0)");
@@ -110,7 +115,7 @@ void InitialValues::place_condition(std::size_t index, bool initial) {
   const bool fits = factor_between(value.measured, unit).has_value();  // then nobody reads the name
   const NodeId node = expressions_.operations.in_unit(
       condition.text->value, value, unit, fits ? std::string() : fmt::format("`{}`", with_primes(base.name, primes)));
-  if (time->value == start_time_ && (initial || entry.samples.empty())) {
+  if (time->value == start_time_ && (initial || samples.empty())) {
     states_[state].initial = node;
     states_[state].span = condition.span;
   }
@@ -120,7 +125,7 @@ void InitialValues::place_condition(std::size_t index, bool initial) {
                  fmt::format("the run goes from {:g} to {:g}", start_time_, run_.to->value),
                  "let the run reach it, or move it");
   }
-  made_.conditions.push_back({state, *time, node, entry.samples, condition.span});
+  made_.conditions.push_back({state, *time, node, samples, condition.span});
 }
 
 /// One message per family, about its first member without a value.

@@ -1,6 +1,7 @@
 // continuo/language/check/states/initial_values.hpp
 // x(0) = ...: initial values, or boundary values where they stand at several times.
 #pragma once
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -24,8 +25,8 @@ class InitialValues {
 
  private:
   void count_conditions() const;
-  [[nodiscard]] std::optional<Setting> time_of(const ConditionText& condition);
-  void place_condition(std::size_t index, bool initial);
+  [[nodiscard]] const std::optional<Setting>& find_time(std::size_t index);
+  void place_condition(std::size_t index, const std::optional<Setting>& time, bool initial);
   [[nodiscard]] std::pair<Span, bool> see(std::size_t state, double time, Span span);
   void missing_conditions() const;
   void make_guesses();
@@ -38,12 +39,17 @@ class InitialValues {
   double start_time_;
   /// Where a state has a value at a time first.
   struct Seen {
-    double time = 0;
+    double time = std::numeric_limits<double>::quiet_NaN();  // of none
     Span span{};
-    bool is_set = false;
   };
 
-  std::vector<std::optional<Setting>> times_;             // of the conditions
+  /// Of the conditions before `end` and behind those of the times before it.
+  struct Time {
+    std::size_t end;
+    std::optional<Setting> time;
+  };
+
+  std::vector<Time> times_;
   std::vector<Seen> seen_;                                // the first value of each state
   std::vector<bool> has_wrong_value_;                     // of each state: a value that is reported already
   std::map<std::pair<std::size_t, double>, Span> later_;  // at other times, by state and time

@@ -134,8 +134,8 @@ void report_circle(Expressions& expressions, const std::vector<State>& all, doub
 void solve_starts(Expressions& expressions, std::vector<State>& states, double start_time) {
   const Layout& layout = expressions.workspace.layout;
   std::unordered_map<std::uint32_t, NodeId> samples;
-  for (const ConditionValues::Entry& condition : expressions.workspace.conditions.all()) {
-    for (const Sample& sample : condition.samples) samples.emplace(sample.variable, sample.of);
+  for (const auto& [condition, of_condition] : expressions.workspace.conditions.samples()) {
+    for (const Sample& sample : of_condition) samples.emplace(sample.variable, sample.of);
   }
   Span span{};  // of the start at hand
   const auto expression_of = [&](std::uint32_t variable) -> NodeId {
