@@ -127,14 +127,17 @@ class Together final : public RunWatcher<X>, public SeenRuns {
   void make_equations(const std::string& method) {
     method_ = method;
     if (!has_events_) {
-      std::optional<LaneDerivatives> derivatives;
-      if (asks_for_derivatives(method_)) derivatives = code_.derivatives();
-      equations_.emplace(*program_, code_.rates(method_, 0), 0, std::move(derivatives));
+      equations_.emplace(equations_of(0));
       return;
     }
-    std::vector<std::shared_ptr<NativeFunction>> codes;
-    for (std::size_t mode = 0; mode < program_->derivatives.size(); ++mode) codes.push_back(code_.rates(method_, mode));
-    mode_equations_.emplace(program_, codes, *this);
+    std::vector<LaneEquations> modes;
+    for (std::size_t mode = 0; mode < program_->derivatives.size(); ++mode) modes.push_back(equations_of(mode));
+    mode_equations_.emplace(program_, std::move(modes), *this);
+  }
+  [[nodiscard]] LaneEquations equations_of(std::size_t mode) {
+    std::optional<LaneDerivatives> derivatives;
+    if (asks_for_derivatives(method_)) derivatives = code_.derivatives(mode);
+    return {*program_, code_.rates(method_, mode), mode, std::move(derivatives)};
   }
   [[nodiscard]] MotionWatcher* watcher(std::size_t i) const { return watchers_.empty() ? nullptr : watchers_[i]; }
 
@@ -210,12 +213,11 @@ class Together final : public RunWatcher<X>, public SeenRuns {
 };
 
 /// The end of the runs from `first` on that agree with that one.
-std::size_t end_of_group(const Model& model, bool has_events, std::span<const Planned> planned,
-                         std::span<const Experiment> experiments, std::size_t first) {
+std::size_t end_of_group(const Model& model, std::span<const Planned> planned, std::span<const Experiment> experiments,
+                         std::size_t first) {
   const Planned& one = planned[first];
   const auto is_in_lanes = [&] {
-    return has_lanes(one.plan->method,
-                     {.has_events = has_events, .has_fixed_steps = one.plan->step > 0, .states = model.states.size()});
+    return has_lanes(one.plan->method, {.has_fixed_steps = one.plan->step > 0, .states = model.states.size()});
   };
   if (!one.plan || !is_in_lanes() || !is_plain(experiments[first]) || one.plan->from == one.plan->to) return first + 1;
   std::size_t last = first + 1;
@@ -259,7 +261,7 @@ void ManyRuns::make(std::span<const Experiment> experiments, std::span<MotionWat
   const bool has_events = company_of(*program_) == Company::with_events;
   Together runs(program_, has_events, *code_, experiments, watchers, planned, done);
   for (std::size_t first = 0, last = 0; first < experiments.size(); first = last) {
-    last = can_go_together_ ? end_of_group(program_->model, has_events, planned, experiments, first) : first + 1;
+    last = can_go_together_ ? end_of_group(program_->model, planned, experiments, first) : first + 1;
     if (!(last > first + 1 ? runs.run(first, last) : runs.run_alone(first))) return;
   }
 }

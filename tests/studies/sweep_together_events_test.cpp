@@ -174,6 +174,48 @@ TEST(SweepTogetherWithEvents, RandomModelsHaveTheBitsOfTheirRunsOneByOne) {
   EXPECT_GT(events, 1000);
 }
 
+/// The steps of the stiff method end at events: each is taken again, alone, with the matrix that the lane has.
+TEST(SweepTogetherWithEvents, RandomModelsHaveTheSameBitsByTheStiffMethod) {
+  const std::vector<std::string> ways = {"method rodas5p tol 1e-4", "method rodas5p tol 1e-7",
+                                         "method rodas5p step 0.03"};
+  double events = 0;
+  for (unsigned seed = 100; seed < 112; ++seed) {
+    const std::string text = Writer(seed).model(ways[seed % ways.size()]);
+    SCOPED_TRACE(text);
+    const PreparedSweep sweep = prepared_sweep(text);
+    EXPECT_TRUE(sweep.goes_together());
+    events += expect_the_runs_one_by_one(sweep, sweep, 0);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(events, 250);
+}
+
+/// From slow to very stiff, with modes of which one is stiff, a slope that is infinite at an event, df/dt, and steps
+/// that are rejected before the motion begins anew.
+TEST(SweepTogetherWithEvents, StiffModelsHaveTheBitsOfTheRunsOneByOne) {
+  const std::string keep = "  keep count of events, x at end, y at 0.7, time of event 2 }\n";
+  for (const std::string& text :
+       {"param k = 1\nx' = y\ny' = k*(1 - x^2)*y - x\nn' = 0\nx(0) = 2\ny(0) = 0\nn(0) = 0\n"
+        "when x falls through 1 { x := 0.9 }\nwhen y crosses 0.5 { n := n + 1 }\n"
+        "when x < -1.5 and n > 4 { if n > 9 { y := -y } }\nrun 0..30 method rodas5p tol 1e-6\n"
+        "sweep { k in (0.1, 1, 5, 20, 100, 1000, 0.3, 2, 7, 300)\n" +
+            keep,
+        "param k = 1\nmode slow { x' = -x + 0.1*y }\nmode fast { x' = k*(cos(t) - x) + sin(x*y) }\n"
+        "y' = sin(5*t) - 0.1*y*x\nx(0) = 1\ny(0) = k/1e4\nwhen x < 0.5 in slow { go fast }\n"
+        "when x < -0.5 in fast { x := 1; go slow }\nevery 0.9 { y := y + 0.5 }\n"
+        "run 0..12 method rodas5p tol 1e-5\nsweep { k in (1, 10, 100, 1000, 1e4, 1e5, 3, 30, 300)\n" +
+            keep,
+        "param k = 1\nx' = y - k*sqrt(x)\ny' = 100*k*(1.2 + cos(3*t) - y)\nx(0) = 0\ny(0) = 1\n"
+        "when y crosses 1.2 { x := 0 }\nrun 0..4 method rodas5p tol 1e-5\n"
+        "sweep { k in (0.1, 1, 10, 100, 1000, 3, 0.3, 7)\n" +
+            keep}) {
+    SCOPED_TRACE(text);
+    const PreparedSweep sweep = prepared_sweep(text);
+    EXPECT_TRUE(sweep.goes_together());
+    EXPECT_GT(expect_the_runs_one_by_one(sweep, sweep, 0), 20);
+  }
+}
+
 /// Machine code takes whole steps where all lanes are in one mode, and evaluates each mode where they are not. The runs
 /// one by one are made without any.
 TEST(SweepTogetherWithEvents, MachineCodeHasTheBitsOfTheRunsOneByOne) {

@@ -56,6 +56,7 @@ class LaneDriver {
       work_.tolerance = tolerance_.all();
       rosenbrock_.emplace(f_, as_run_start(starts[0]), x_, settings.options);
     }
+    if constexpr (lands) again_.assign(W, {as_run_start(starts[0]).x, settings.options});
   }
   LaneDriver(const LaneDriver&) = delete;
   LaneDriver& operator=(const LaneDriver&) = delete;
@@ -119,6 +120,7 @@ class LaneDriver {
 
   static constexpr bool has_own_runs = HasOwnRuns<F, M>;
   static constexpr bool is_rosenbrock = RosenbrockForLanes<M>;
+  static constexpr bool lands = is_rosenbrock && has_own_runs;  // steps are taken again, to end at events
 
   static constexpr bool is_small = [] {
     if constexpr (FixedSize<X>) {
@@ -542,7 +544,11 @@ class LaneDriver {
     if constexpr (PartOfPair<M>) {
       pairs_[lane].x() = step.begin;
       get(work_.k[0], lane, pairs_[lane].slope());
-      one.steps().set_pair(pairs_[lane]);
+      one.steps().set_again(pairs_[lane]);
+    }
+    if constexpr (lands) {
+      again_[lane].set(step.begin, work_, lane, rosenbrock_->begins(lane));
+      one.steps().set_again(again_[lane]);
     }
     const bool changed = one.pass_step();
     must_look_.set(lane, one.must_look() ? 1.0 : 0.0);
@@ -616,8 +622,9 @@ class LaneDriver {
   std::vector<Run> runs_;
   std::vector<PairOfLane<M, X>> pairs_;  // where the method is part of one
   std::optional<RosenbrockSteps> rosenbrock_;
-  bool has_rows_;           // or somebody who may want to see pieces of the motion
-  bool exhausted_ = false;  // no run is left to begin
+  std::vector<StepAgain<M, X>> again_;  // where steps end at events
+  bool has_rows_;                       // or somebody who may want to see pieces of the motion
+  bool exhausted_ = false;              // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
   std::size_t one_by_one_ = 0;          // so many of the next steps are not free: a run escapes in one of them
   std::optional<std::size_t> pending_;  // a run that waits for room

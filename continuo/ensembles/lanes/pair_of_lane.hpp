@@ -17,7 +17,9 @@ template <class M, State X>
 class PairOfLane {
  public:
   template <class System>
-  void retake(System&, double, double, X&) {}
+  [[nodiscard]] bool retake(System&, double, double, X&) {
+    return true;
+  }
   template <class System, class Polynomial>
   void interpolate(System&, double, double, const X&, Polynomial&) {}
 };
@@ -55,11 +57,12 @@ class PairOfLane<M, X> {
 
   /// Takes the step once more, to end at an event, as the pair does: from `x()`, with the slope there in `slope()`.
   template <class System>
-  void retake(System& system, double t, double h, X& x_new) {
+  [[nodiscard]] bool retake(System& system, double t, double h, X& x_new) {
     Pair::retaken(work_);
     work_.nonstiff.k[0] = keep(slope_);
     work_.nonstiff.start_fresh = true;
     static_cast<void>(Pair::step(system, t, x_, h, begins_, work_, x_new));
+    return true;
   }
   /// The polynomial of a step that was taken so.
   template <class System, class Polynomial>

@@ -10,6 +10,7 @@
 
 #include <continuo/ensembles/lanes/lane_linearization.hpp>
 #include <continuo/ensembles/lanes/lane_sizes.hpp>
+#include <continuo/ensembles/lanes/rosenbrock_step.hpp>
 #include <continuo/ensembles/lanes/system_with_parameters.hpp>
 #include <continuo/ensembles/run_start.hpp>
 #include <continuo/methods/implicit/jacobian_of_step.hpp>
@@ -21,12 +22,6 @@
 #include <continuo/system/rebound_state.hpp>
 
 namespace continuo::detail {
-
-/// A Rosenbrock method whose steps depend on nothing of those before: not one of order 2, which carries rounding errors
-/// on, nor one that begins with f of its last stage.
-template <class M>
-concept RosenbrockForLanes =
-    is_implicit<M>() && requires { M::tableau.gamma_sum; } && (M::order > 2) && !M::tableau.first_same_as_last();
 
 template <RosenbrockForLanes M, class F, State X, State P, std::size_t W>
 class RosenbrockLanes {
@@ -70,6 +65,9 @@ class RosenbrockLanes {
   /// The lanes whose equations were solved, and where they were not in all, how they have ended in each.
   [[nodiscard]] const Mask& solved() const { return solved_; }
   [[nodiscard]] const Statuses* statuses() const { return any_unsolved_ ? &statuses_ : nullptr; }
+
+  /// Whether the step of a lane is the first one of its motion.
+  [[nodiscard]] bool begins(std::size_t lane) const { return begins_[lane] != 0; }
 
   /// The accepted lanes go on. The others keep J for a shorter step, but where the motion begins.
   void accept(const Mask& accepted) {

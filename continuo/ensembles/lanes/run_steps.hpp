@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <continuo/ensembles/lanes/pair_of_lane.hpp>
+#include <continuo/ensembles/lanes/rosenbrock_step.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
 namespace continuo::detail {
@@ -17,6 +18,20 @@ template <class M>
 inline constexpr int degree_in_lanes = M::dense_degree;
 template <PartOfPair M>
 inline constexpr int degree_in_lanes<M> = M::Pair::dense_degree;
+
+/// What takes a step of a lane once more, to end at an event.
+/// @{
+template <class M, State X>
+struct StepAgainKind {
+  using Type = PairOfLane<M, X>;
+};
+template <RosenbrockForLanes M, State X>
+struct StepAgainKind<M, X> {
+  using Type = RosenbrockStep<M, X>;
+};
+template <class M, State X>
+using StepAgain = typename StepAgainKind<M, X>::Type;
+/// @}
 
 template <class System, State X, class M>
 class RunSteps final : public Steps<System, X> {
@@ -46,20 +61,20 @@ class RunSteps final : public Steps<System, X> {
   void at_parts(std::span<const double, Base::parts_at_once> thetas, std::span<X, Base::parts_at_once> xs) override {
     polynomial()(thetas, xs);
   }
-  /// Of a pair the steps end at events, as where its stiff method takes them.
-  [[nodiscard]] bool lands() const override { return PartOfPair<M>; }
+  /// The steps of a stiff method end at events, and those of a pair, as where its stiff method takes them.
+  [[nodiscard]] bool lands() const override { return PartOfPair<M> || RosenbrockForLanes<M>; }
   [[nodiscard]] bool retake(double size, const Options<X>&) override {
-    pair_->retake(this->system_, this->begin_, size, this->x_end_);
+    const bool is_solved = again_->retake(this->system_, this->begin_, size, this->x_end_);
     this->h_ = size;
     this->end_ = this->begin_ + size;
     this->interpolated_ = false;
     is_retaken_ = true;
-    return this->finite_end();
+    return is_solved && this->finite_end();
   }
   void move_end(const X&) override {}
 
-  /// What the pair knows of this run.
-  void set_pair(PairOfLane<M, X>& pair) { pair_ = &pair; }
+  /// What takes the step of this run once more.
+  void set_again(StepAgain<M, X>& again) { again_ = &again; }
 
   /// A new run: no step yet.
   void begin_run(double t, const X& x, const Options<X>& options) {
@@ -135,12 +150,12 @@ class RunSteps final : public Steps<System, X> {
   [[nodiscard]] const Interpolant<X, degree_in_lanes<M>>& polynomial() {
     asked_ = true;
     if (is_retaken_ && !std::exchange(this->interpolated_, true))
-      pair_->interpolate(this->system_, this->begin_, this->h_, this->x_end_, polynomial_);
+      again_->interpolate(this->system_, this->begin_, this->h_, this->x_end_, polynomial_);
     return polynomial_;
   }
 
   Interpolant<X, degree_in_lanes<M>> polynomial_;
-  PairOfLane<M, X>* pair_ = nullptr;
+  StepAgain<M, X>* again_ = nullptr;
   double limit_ = 0;
   bool asked_ = false, has_step_ = false, waits_ = false, is_retaken_ = false;
 };

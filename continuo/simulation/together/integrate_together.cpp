@@ -56,7 +56,7 @@ const LanesOfMethod* find(std::string_view method) {
 bool has_lanes(std::string_view method, const RunTraits& runs) {
   const LanesOfMethod* const found = find(method);
   if (!found) return false;
-  if (found->is_stiff) return !runs.has_events && runs.states < least_sparse_size;
+  if (found->is_stiff) return runs.states < least_sparse_size;
   return !(runs.has_fixed_steps && found->is_part_of_pair);
 }
 

@@ -30,12 +30,12 @@ struct TogetherRuns {
 
 /// What decides about lanes besides the method.
 struct RunTraits {
-  bool has_events, has_fixed_steps;
+  bool has_fixed_steps;
   std::size_t states;
 };
 /// Whether there are lanes for this method. Of a pair they are those of its explicit method, and only where the error
 /// decides about the steps; runs that it would continue by its stiff one end as `cannot_continue`. Those of a stiff
-/// method have no events, at which its steps would have to end, and matrices that one run decomposes as dense ones.
+/// method have matrices that one run decomposes as dense ones.
 [[nodiscard]] bool has_lanes(std::string_view method, const RunTraits& runs);
 /// Whether the method asks for df/dx.
 [[nodiscard]] bool asks_for_derivatives(std::string_view method);

@@ -1,6 +1,5 @@
 // The body of integrate_together_by; included only by the integrate_together_*.cpp.
 #pragma once
-#include <type_traits>
 #include <variant>
 
 #include <continuo/ensembles/ensemble.hpp>
@@ -11,12 +10,9 @@ namespace continuo::model {
 
 template <class M>
 void integrate_together_by(const TogetherRuns& runs) {
-  const auto integrate = [&]<class Equations>(const Equations* equations) {
-    constexpr bool lands_at_events = continuo::detail::RosenbrockForLanes<M>;  // which its lanes do not
-    if constexpr (!(lands_at_events && std::is_same_v<Equations, ModeEquations>)) {
-      static_cast<void>(ensemble<LaneEquations::Wide::width>(*equations, starts(runs.count, runs.start), runs.interval,
-                                                             M{}, runs.options));
-    }
+  const auto integrate = [&](const auto* equations) {
+    static_cast<void>(ensemble<LaneEquations::Wide::width>(*equations, starts(runs.count, runs.start), runs.interval,
+                                                           M{}, runs.options));
   };
   std::visit(integrate, runs.equations);
 }

@@ -14,14 +14,13 @@ std::shared_ptr<NativeFunction> LaneCode::rates(const std::string& method, std::
   return code;
 }
 
-LaneDerivatives LaneCode::derivatives() {
+LaneDerivatives LaneCode::derivatives(std::size_t mode) {
   const std::scoped_lock lock(mutex_);
-  if (!tapes_) {
-    tapes_ = std::make_shared<const DerivativeTapes>(derivative_tapes(*program_, false));
-    if (NativeCompiler* const compiler = program_->model.native.get())
-      entries_ = compiler->lane_code(tapes_->modes.front().entries);
-  }
-  return {tapes_, entries_};
+  if (!tapes_) tapes_ = std::make_shared<const DerivativeTapes>(derivative_tapes(*program_, false));
+  std::shared_ptr<NativeFunction>& entries = entries_[mode];
+  NativeCompiler* const compiler = program_->model.native.get();
+  if (compiler && !entries) entries = compiler->lane_code(tapes_->modes[mode].entries);
+  return {tapes_, entries, mode};
 }
 
 }  // namespace continuo::model

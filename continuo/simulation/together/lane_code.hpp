@@ -21,15 +21,15 @@ class LaneCode {
 
   /// That of a mode's equations with the steps of this method; null where nobody compiles any.
   [[nodiscard]] std::shared_ptr<NativeFunction> rates(const std::string& method, std::size_t mode);
-  /// df/dx and df/dt of the first mode.
-  [[nodiscard]] LaneDerivatives derivatives();
+  /// df/dx and df/dt of a mode.
+  [[nodiscard]] LaneDerivatives derivatives(std::size_t mode);
 
  private:
   std::shared_ptr<const ModelProgram> program_;
   std::mutex mutex_;
   std::map<std::pair<std::string, std::size_t>, std::shared_ptr<NativeFunction>> rates_;  // by method and mode
   std::shared_ptr<const DerivativeTapes> tapes_;
-  std::shared_ptr<NativeFunction> entries_;  // of df/dx
+  std::map<std::size_t, std::shared_ptr<NativeFunction>> entries_;  // of df/dx, by mode
 };
 
 }  // namespace continuo::model
