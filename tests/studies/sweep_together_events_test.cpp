@@ -222,14 +222,14 @@ TEST(SweepTogetherWithEvents, MachineCodeHasTheBitsOfTheRunsOneByOne) {
   const model::TestFolder folder;
   const auto native =
       std::make_shared<model::NativeCompiler>(model::NativeOptions{model::NativeUse::always, folder.path / "cache"});
-  for (const unsigned seed : {2U, 5U, 6U}) {
-    const std::string text =
-        Writer(seed).model(seed % 2 == 0 ? "method dop853 tol 1e-8" : "method tsitouras5 tol 1e-6");
+  for (const auto& [seed, how] : {std::pair(2U, "method dop853 tol 1e-8"), std::pair(5U, "method tsitouras5 tol 1e-6"),
+                                  std::pair(6U, "method dop853 tol 1e-8"), std::pair(11U, "method rodas5p tol 1e-6")}) {
+    const std::string text = Writer(seed).model(how);
     SCOPED_TRACE(text);
     expect_the_runs_one_by_one(prepared_sweep(text, {}, native), prepared_sweep(text), 0);
   }
   EXPECT_EQ(native->report().trouble, "");
-  EXPECT_GE(native->report().compiled, 3U);
+  EXPECT_GE(native->report().compiled, 4U);
 }
 
 /// The pair of methods ends steps at events, learns from them, and goes over to its stiff method in some runs.
