@@ -147,14 +147,15 @@ void RunRecorder::on_segment(double to, const At& at) {
     sample.x.resize(x_.size());
     at(sample.t, sample.x);
   });
-  if (watched_values_.empty() && !every_step_) return;
+  const bool adds_row = every_step_ && wants_rows();
+  if (watched_values_.empty() && !adds_row) return;
   at(to, x_);
   watch(to, x_);
-  if (every_step_ && wants_rows()) add_row(to, x_);
+  if (adds_row) add_row(to, x_);
 }
 
 double RunRecorder::quiet_until() const {
-  if (!watched_values_.empty() || every_step_) return -std::numeric_limits<double>::infinity();
+  if (!watched_values_.empty() || (every_step_ && wants_rows())) return -std::numeric_limits<double>::infinity();
   return wants_rows() ? std::min(times_[next_output_], next_sample()) : next_sample();
 }
 
