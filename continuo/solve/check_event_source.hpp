@@ -18,8 +18,8 @@ namespace detail {
 
 // As for methods (check_method.hpp): a name that S has too is ambiguous in a class that derives from both.
 struct NamesOfEvents {
-  int can_restart, can_assign, is_condition, renews_guard, has_limit_action, at_limit, carried, take_step, is_enclosed,
-      enclose_all, whole, enclosure, value_enclosure, problem;
+  int can_restart, can_assign, is_condition, renews_guard, watched_by, has_limit_action, at_limit, carried, take_step,
+      is_enclosed, enclose_all, whole, enclosure, value_enclosure, problem;
 };
 template <class S>
 struct WithNamesOfEvents : S, NamesOfEvents {};
@@ -89,6 +89,10 @@ consteval void check_optional_members_of_source() {
   static_assert(keeps_renews_guard,
                 "the member `renews_guard` of the source of events would be ignored: it must be public and const: bool "
                 "renews_guard(std::size_t i) const");
+  constexpr bool keeps_watched_by = HasWatchedBySystem<S, System> || requires { &With::watched_by; };
+  static_assert(keeps_watched_by,
+                "the member `watched_by` of the source of events would be ignored: it must be public and const: bool "
+                "watched_by(const System& system) const");
   constexpr bool keeps_limit_action =
       HasLimitAction<S, System, X> || (requires { &With::has_limit_action; } && requires { &With::at_limit; });
   static_assert(

@@ -267,6 +267,7 @@ struct EventResponse {
 ///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero, if known
 ///   take_step(system, begin, size, coefficients), is_enclosed(i), enclose_all(a, b), whole(i), enclosure(i, a, b),
 ///     value_enclosure(i, a) [by samples]: guards enclosed over parts a..b of 0..1 of a step, see event_location.hpp
+///   watched_by(system) [false]: steps that the system takes itself (own_steps.hpp) have no root of a guard in them
 ///   is_condition(i) [false]: the guard is positive where a condition holds, and never zero
 ///   renews_guard(i) [false]: only the motion crosses the guard, and firing gives it another meaning
 ///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate

@@ -122,6 +122,13 @@ struct RenewsGuardIsAText : Right {
 // refused: the member `renews_guard` of the source of events would be ignored
 template bool const checked<RenewsGuardIsAText>;
 
+struct PrivateWatchedBy : Right {
+ private:
+  bool watched_by(const Flow&) const;
+};
+// refused: the member `watched_by` of the source of events would be ignored
+template bool const checked<PrivateWatchedBy>;
+
 struct LimitWithoutAction : Right {
   bool has_limit_action(std::size_t) const;
 };

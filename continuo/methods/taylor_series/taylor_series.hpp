@@ -29,6 +29,7 @@
 #include <continuo/methods/support/weighted_norm.hpp>  // the greater one
 #include <continuo/methods/taylor_series/coarse_power.hpp>
 #include <continuo/methods/taylor_series/series_number.hpp>
+#include <continuo/methods/taylor_series/series_steps.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/system/rebound_state.hpp>
 
@@ -254,6 +255,48 @@ struct TaylorSeries {
     if (!detail::is_finite(Real(squares[0] + squares[1]))) return factor;
     return min(Real(greatest_factor), Real(abs(next.scale / h) * least_inverse_root(squares, 2 * (p - 1)))) *
            safety<Real>(p);
+  }
+
+  /// Many steps after the last one that was accepted, by the system: see SeriesSteps. `own` is detail::OwnSteps.
+  template <class System, class Own, State X>
+    requires TakesSeriesSteps<System, X>
+  static std::size_t take_steps(System& system, const Own& own, Workspace<X>& work) {
+    using Real = Scalar<X>;
+    Expansion<X>&now = work.next(), &next = work.now();  // of the step to come
+    if (!now.is_known || !work.is_controlled || !work.failure.empty() || may_have_corners<X>(system)) return 0;
+    const std::size_t p = work.order;
+    SeriesSteps<Real> steps{.x = own.x.data(),
+                            .rest = work.next_rest.data(),
+                            .now = now.c.data(),
+                            .next = next.c.data(),
+                            .t = own.t,
+                            .scale = now.scale,
+                            .size = own.next,
+                            .carried = own.carried,
+                            .limit = own.limit,
+                            .longest = own.longest,
+                            .until = own.until,
+                            .forward = own.forward,
+                            .components = dimension(own.x),
+                            .order = p,
+                            .most = own.most,
+                            .tolerance = own.tolerance,
+                            .terms = {allowance<Real>(p, p - 1), allowance<Real>(p, p)},
+                            .greatest_factor = Real(greatest_factor),
+                            .safety = safety<Real>(p),
+                            .times = own.times,
+                            .has_guards = own.has_guards};
+    const std::size_t made = system.take_series_steps(steps);
+    if (made == 0) return 0;
+    if (made % 2 == 1) std::swap(now.c, next.c);
+    now.scale = steps.scale;
+    own.t = steps.t, own.next = steps.size, own.carried = steps.carried;
+    return made;
+  }
+  /// What a step costs that begins with its series.
+  template <State X>
+  [[nodiscard]] static std::size_t evaluations_of_step(const Workspace<X>& work) {
+    return work.order;
   }
 
   /// x at this part of the last step, by its series: what `interpolate` gives would have to be made first, and its

@@ -53,6 +53,8 @@ class ModelEvents {
   }
   [[nodiscard]] double next_time(std::size_t i, double t, bool inclusive) const;
   void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
+  /// Whether steps that the system takes itself have no root of a guard in them.
+  [[nodiscard]] bool watched_by(const ModelSystem& system) const { return system.watches_guards(); }
   /// Where the motion carries guard i from zero, by its exact derivatives; empty for surfaces of jumps, and while the
   /// motion slides.
   [[nodiscard]] std::optional<Carried> carried(const ModelSystem& system, std::size_t i, double t, const X& x,

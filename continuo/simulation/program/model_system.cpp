@@ -180,7 +180,10 @@ std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::s
   if (slides())
     return "the motion slides along a surface where the equations jump, and has no Taylor series there: take dop853";
   if (!series_ || series_mode_ != mode_) {
-    series_.emplace(*program_, equations(), variables_);
+    std::vector<NodeId> guards;
+    if (!has_switches())
+      for (const std::size_t event : program_->guards[mode_].events) guards.push_back(model().events[event].guard);
+    series_.emplace(*program_, equations(), variables_, guards);
     series_mode_ = mode_;
   }
   const std::span<const double> values = switch_values();
@@ -188,6 +191,11 @@ std::string_view ModelSystem::taylor_coefficients(double t, double scale, std::s
     series_->set(program_->switches[mode_].switches[k].variable, values[k]);
   series_->expand(t, scale, c, held_);
   return {};
+}
+
+std::size_t ModelSystem::take_series_steps(SeriesSteps<double>& steps) {
+  if (!series_ || series_mode_ != mode_ || !held_.empty() || has_switches()) return 0;
+  return series_->take_steps(steps);
 }
 
 }  // namespace continuo::model

@@ -126,6 +126,13 @@ class ModelSystem {
   void time_derivative(double t, const X& x, X& dfdt);
   /// The series of the solution, x(t + scale s), from c[0] on; see HasTaylorCoefficients. The first call compiles.
   [[nodiscard]] std::string_view taylor_coefficients(double t, double scale, std::span<double> c);
+  /// Many steps of the series by machine code, as SeriesSteps says; 0 where there is none (yet), and where states are
+  /// held or the jumps of the equations are located.
+  [[nodiscard]] std::size_t take_series_steps(SeriesSteps<double>& steps);
+  /// Whether such steps watch the guards of all events of the present mode.
+  [[nodiscard]] bool watches_guards() const {
+    return series_ && series_mode_ == mode_ && !has_switches() && series_->watches_guards();
+  }
   /// Whether a series may not show what comes within a step: the equations depend on time, or they have jumps or
   /// corners that are not switches.
   [[nodiscard]] bool has_corners() const { return !autonomous || (series_ && series_->has_corners()); }

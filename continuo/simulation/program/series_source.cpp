@@ -16,6 +16,7 @@ namespace continuo::model {
 namespace {
 
 constexpr std::size_t most_single_operations = 4000, most_operations_written_out = 3000;
+constexpr std::size_t least_order_of_steps = 4;
 constexpr std::uint32_t block = 16;           // members whose sums are formed together
 constexpr std::uint32_t most_scattered = 64;  // members of a linear operation that are written one by one
 
@@ -83,7 +84,7 @@ class SeriesWriter {
     once_count_ = count;
   }
 
-  std::string text() {
+  std::string text(std::string_view guards) {
     line("double t[{}];", once_count_ + 1);
     line("two q[{}];", order_ * pairs_.size() + 1);
     if (reads_time()) {
@@ -100,7 +101,8 @@ class SeriesWriter {
       line("}}");
     }
     const std::string body =
-        "void evaluate(double *restrict w, double *restrict x, double scale) {\n" + std::move(text_) + "}\n";
+        "static __attribute__((noinline)) void coefficients(double *restrict w, double *restrict x, double scale) {\n" +
+        std::move(text_) + "}\n";
     text_.clear();
     // Sums of a few members that lie apart are not gathered into vectors: that would take longer.
     if (is_written_out()) line("#pragma GCC optimize(\"no-tree-slp-vectorize\")");
@@ -112,7 +114,13 @@ class SeriesWriter {
         if (body.find(name + "(") != std::string::npos) sum_function(name, weight, count);
       }
     }
-    return std::move(text_) + body;
+    text_ += body;
+    line("struct series_steps;");
+    if (order_ >= least_order_of_steps) text_ += series_steps_source(derivatives_.size(), order_, guards);
+    line("void evaluate(double *w, double *x, double scale, struct series_steps *steps) {{");
+    if (order_ >= least_order_of_steps) line("if (steps) return take_steps(steps);");
+    line("coefficients(w, x, scale);\n}}");
+    return std::move(text_);
   }
 
  private:
@@ -761,8 +769,8 @@ class SeriesWriter {
 }  // namespace
 
 std::string series_source(const SeriesProgram<double>& program, std::span<const std::uint32_t> derivatives,
-                          std::size_t order) {
-  return SeriesWriter(program, derivatives, order).text();
+                          std::size_t order, std::string_view guards) {
+  return SeriesWriter(program, derivatives, order).text(guards);
 }
 
 bool is_worth_compiling(const SeriesProgram<double>& program) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <continuo/methods/taylor_series/series_program.hpp>
+#include <continuo/simulation/program/guard_source.hpp>
 #include <continuo/simulation/program/series_source.hpp>
 #include <continuo/simulation/program/solution_series.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
@@ -48,6 +49,7 @@ struct SeriesEquations {
   std::vector<double> exponent_values{};   // those of variables behind the model's
   std::shared_ptr<NativeCompiler> native;  // null: none
   std::uint32_t states_begin, states_end;
+  std::vector<NodeId> guards{};  // that many steps watch
 
   [[nodiscard]] std::vector<double> values_of(std::span<const NodeId> nodes, std::span<const double> variables) const {
     return evaluate(graph, nodes, variables, [this](std::uint32_t table, double x, bool slope) {
@@ -57,9 +59,15 @@ struct SeriesEquations {
   }
   /// The program for the exponents that these variables give: the last one, or a new one.
   [[nodiscard]] std::shared_ptr<const WrittenSeries> written_for(std::span<const double> variables) const;
+  [[nodiscard]] std::shared_ptr<const GuardSource> guard_source_of(std::size_t order) const {
+    return guard_sources.of(order, [&] {
+      return std::make_shared<GuardSource>(guard_source(graph, guards, states_begin, states_end, order));
+    });
+  }
 
   mutable std::mutex mutex{};  // of the last one
   mutable std::shared_ptr<const WrittenSeries> last{};
+  mutable SharedParts<std::size_t, const GuardSource> guard_sources{};  // by the order of the series
 };
 
 struct SolutionSeries::Program {
@@ -81,6 +89,9 @@ struct SolutionSeries::Program {
   /// changes, the next call need not ask for it again. Null where it has to.
   NativeSeries last_code = nullptr;
   std::size_t last_size = 0;
+  // Of many steps: memory, and the guards that they watch with what these read and does not move.
+  std::vector<double> scratch{}, guard_numbers{};
+  std::shared_ptr<const GuardSource> guards{};
 };
 
 /// Writes equations as series, level by level: the operands of an operation are on levels below its own.
@@ -629,11 +640,12 @@ void SolutionSeries::Program::renew() {
   }
   is_stale = false;
   last_code = nullptr;
+  guard_numbers.clear();
 }
 
 /// What the text of the function is made of, as bytes.
 std::string key_of(const SeriesProgram<double>& series, std::span<const Register> rates, std::size_t order) {
-  std::string key = "series 4";
+  std::string key = "series 5";
   const auto append = [&](const auto& list) {
     for (const auto part : list) key.append(reinterpret_cast<const char*>(&part), sizeof part);
   };
@@ -652,10 +664,14 @@ NativeFunction* SolutionSeries::Program::function_of(std::size_t order, std::spa
   if (!function || function_order != order || !std::ranges::equal(function_rates, rates)) {
     function_order = order;
     function_rates.assign(rates.begin(), rates.end());
+    guards = equations->guard_source_of(order);
+    guard_numbers.clear();
     function = written->functions.of({order, function_rates}, [&] {
-      return equations->native->function(
-          key_of(*written->series, rates, order),
-          [program = written->series, order, list = function_rates] { return series_source(*program, list, order); });
+      const std::string text = guards->text.value_or("");
+      return equations->native->function(key_of(*written->series, rates, order) + text,
+                                         [program = written->series, order, list = function_rates, text] {
+                                           return series_source(*program, list, order, text);
+                                         });
     });
   }
   return function.get();
@@ -680,11 +696,11 @@ void SolutionSeries::Program::run(NativeSeries code, double t, double scale, std
   double* const rows = series.rows().data();
   rows[0] = t;
   for (std::size_t i = 0; i < n; ++i) rows[i + 1] = c[i];
-  code(rows, c.data(), scale);
+  code(rows, c.data(), scale, nullptr);
 }
 
 SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives,
-                               std::span<const double> variables) {
+                               std::span<const double> variables, std::span<const NodeId> guards) {
   const Layout& layout = program.model.layout;
   const auto make = [&] {
     auto equations = std::make_shared<SeriesEquations>();
@@ -695,6 +711,7 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
     equations->states_end = layout.states + static_cast<std::uint32_t>(program.model.states.size());
     std::vector<NodeId> nodes;
     for (const NodeId node : derivatives) nodes.push_back(program.with_inputs(equations->graph, node));
+    for (const NodeId node : guards) equations->guards.push_back(program.with_inputs(equations->graph, node));
     Sharing sharing(equations->graph, layout.states, equations->states_end, program.tape_variables().variables);
     equations->derivatives = sharing.of(nodes);
     equations->exponent_values = sharing.exponents();
@@ -702,9 +719,10 @@ SolutionSeries::SolutionSeries(const ModelProgram& program, std::span<const Node
       if (equations->graph[id].op == Op::power) equations->exponents.push_back(equations->graph[id].b);
     return equations;
   };
+  std::vector<NodeId> key(derivatives.begin(), derivatives.end());
+  key.insert(key.end(), guards.begin(), guards.end());
   program_ = std::make_unique<Program>(
-      Program{.equations = program.series_equations.of({derivatives.begin(), derivatives.end()}, make),
-              .variables = {variables.begin(), variables.end()}});
+      Program{.equations = program.series_equations.of(key, make), .variables = {variables.begin(), variables.end()}});
   program_->variables.resize(program.tape_variables().variables);
   const std::vector<double>& exponents = program_->equations->exponent_values;
   program_->variables.insert(program_->variables.end(), exponents.begin(), exponents.end());
@@ -721,6 +739,51 @@ SolutionSeries::~SolutionSeries() = default;
 
 bool SolutionSeries::has_corners() const {
   return program_->series.has_corners();
+}
+
+bool SolutionSeries::watches_guards() const {
+  return program_->last_code != nullptr && program_->guards->text;
+}
+
+std::size_t SolutionSeries::take_steps(SeriesSteps<double>& steps) {
+  // The code of the last series is that of these: it has the steps too.
+  if (program_->is_stale || program_->last_code == nullptr ||
+      program_->last_size != steps.components * (steps.order + 1) || (steps.has_guards && !program_->guards->text))
+    return 0;
+  program_->scratch.resize(series_scratch(steps.components));
+  if (steps.has_guards && program_->guard_numbers.empty()) {
+    program_->guard_numbers = program_->equations->values_of(program_->guards->numbers, program_->variables);
+    program_->guard_numbers.push_back(0);  // so that there is one
+  }
+  const Tolerance<double>& tolerance = steps.tolerance;
+  NativeSeriesSteps native{.rows = program_->series.rows().data(),
+                           .scratch = program_->scratch.data(),
+                           .x = steps.x,
+                           .rest = steps.rest,
+                           .now = steps.now,
+                           .next = steps.next,
+                           .t = steps.t,
+                           .scale = steps.scale,
+                           .size = steps.size,
+                           .carried = steps.carried,
+                           .limit = steps.limit,
+                           .longest = steps.longest,
+                           .until = steps.until,
+                           .forward = steps.forward,
+                           .rtol = tolerance.rtol_each ? tolerance.rtol_each : &tolerance.rtol,
+                           .atol = tolerance.atol_each ? tolerance.atol_each : &tolerance.atol,
+                           .rtol_each = tolerance.rtol_each ? 1 : 0,
+                           .atol_each = tolerance.atol_each ? 1 : 0,
+                           .terms = {steps.terms[0], steps.terms[1]},
+                           .greatest_factor = steps.greatest_factor,
+                           .safety = steps.safety,
+                           .times = steps.times,
+                           .numbers = steps.has_guards ? program_->guard_numbers.data() : nullptr,
+                           .most = static_cast<long long>(steps.most),
+                           .made = 0};
+  program_->last_code(nullptr, nullptr, 0, &native);
+  steps.t = native.t, steps.scale = native.scale, steps.size = native.size, steps.carried = native.carried;
+  return static_cast<std::size_t>(native.made);
 }
 
 void SolutionSeries::set(std::uint32_t variable, double value) {

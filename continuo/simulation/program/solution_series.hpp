@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include <continuo/methods/taylor_series/series_steps.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::model {
@@ -18,8 +19,9 @@ namespace continuo::model {
 /// A copy is a checkpoint.
 class SolutionSeries {
  public:
-  /// `variables` is a whole register file as `start_values` gives it.
-  SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives, std::span<const double> variables);
+  /// `variables` is a whole register file as `start_values` gives it; `guards` are those that many steps watch.
+  SolutionSeries(const ModelProgram& program, std::span<const NodeId> derivatives, std::span<const double> variables,
+                 std::span<const NodeId> guards = {});
   SolutionSeries(const SolutionSeries& other);
   SolutionSeries(SolutionSeries&&) noexcept;
   SolutionSeries& operator=(const SolutionSeries& other);
@@ -28,6 +30,10 @@ class SolutionSeries {
 
   /// The coefficients after those of order 0, which are there, order by order; those of `held` states are 0.
   void expand(double t, double scale, std::span<double> c, std::span<const std::size_t> held = {});
+  /// Many steps of the solution by machine code, see SeriesSteps; 0 where there is none (yet).
+  [[nodiscard]] std::size_t take_steps(SeriesSteps<double>& steps);
+  /// Whether these steps watch all guards.
+  [[nodiscard]] bool watches_guards() const;
   /// Whether anything in the expressions jumps or bends.
   [[nodiscard]] bool has_corners() const;
 

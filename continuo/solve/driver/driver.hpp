@@ -369,14 +369,29 @@ class Driver {
 
   // Lets the steps go on as long as nothing happens that anybody sees.
   void pass_quietly(Real limit, Real until) {
-    if (logic_.any_guard() || !shifted_.empty() || forward() * (until - t_) <= 0) return;
+    const bool has_guards = logic_.any_guard();
+    if (has_guards && !logic_.may_pass_quietly(steps())) return;
+    if (!shifted_.empty() || forward() * (until - t_) <= 0) return;
     const std::size_t tries = statistics().steps + statistics().rejected;
-    const std::size_t last = std::min(options_.max_steps, marks_.next());  // is one that is looked at
-    if (last < tries + 2) return;
+    if (options_.max_steps < tries + 2) return;
     if (const std::optional<Real> tick = logic_.next_quiet(t_, until)) until = *tick;
-    if (steps().take_quietly(limit, until, last - tries - 1, options_) == 0) return;
+    constexpr std::size_t most_at_once = 64;
+    times_.resize(most_at_once);
+    const std::size_t most = options_.max_steps - tries - 1,
+                      before_mark = std::max(marks_.next(), tries + 1) - tries - 1;
+    const std::size_t made = steps().take_quietly({.limit = limit,
+                                                   .until = until,
+                                                   .most = std::min(most, most_at_once),
+                                                   .most_unseen = std::min(most, before_mark),
+                                                   .times = times_,
+                                                   .has_guards = has_guards},
+                                                  options_);
+    if (made == 0) return;
+    for (std::size_t k = 1; k <= made; ++k)
+      if (tries + k >= marks_.next()) marks_.mark(tries + k, times_[k - 1]);
     t_ = steps().end();
     x_ = steps().x_end();
+    if (has_guards) logic_.pass_quietly(steps(), t_, x_);
   }
 
   // Processes the events of the last step, in the order of time.
@@ -756,7 +771,8 @@ class Driver {
   Interval<Real> interval_;
   Real t_;
   X x_, before_;
-  std::vector<X> samples_;  // the states of the last sample of the guards
+  std::vector<Real> times_;  // of the ends of quiet steps
+  std::vector<X> samples_;   // the states of the last sample of the guards
   X solved_ = x_;
   UnknownsSolver<X> unknowns_{x_};
   Begin begin_;

@@ -127,6 +127,23 @@ class EventLogic {
   }
   static constexpr bool has_enclosures = detail::HasEnclosures<Events, System, X>;
 
+  /// Whether the system can take steps in which no guard has a root, and every guard is on its side, not at zero.
+  [[nodiscard]] bool may_pass_quietly(StepsOf& steps) const {
+    if constexpr (detail::HasWatchedBySystem<Events, System>) {
+      if (!events_.watched_by(steps.system())) return false;
+      const std::vector<GuardState<Real>>& states = watch_.states();
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (watched(i) && states[i].active &&
+            (states[i].at_zero || states[i].side == 0 || sign_of(g_[i]) != states[i].side))
+          return false;
+      return true;
+    } else {
+      return false;
+    }
+  }
+  /// Steps without roots have led to (t, x): no guard has changed its side.
+  void pass_quietly(StepsOf& steps, Real t, const X& x) { evaluate(steps, t, x, g_); }
+
   /// Updates the sides at (t, x), the end of the segment that was searched last, in which there is no event.
   void settle(StepsOf& steps, Real t, const X& x) {
     evaluate(steps, t, x, g_);

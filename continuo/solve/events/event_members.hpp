@@ -73,6 +73,11 @@ template <class S, class System, class X>
 concept HasCarried = requires(S& s, System& system, std::size_t i, const Scalar<X>& t, const X& x) {
   { s.carried(system, i, t, x, t) } -> std::convertible_to<std::optional<Carried>>;
 };
+/// The system finds out itself whether a step may have a root of these guards in it (solve/steps/own_steps.hpp).
+template <class S, class System>
+concept HasWatchedBySystem = requires(const S& s, const System& system) {
+  { s.watched_by(system) } -> std::convertible_to<bool>;
+};
 template <class S, class System, class X>
 concept HasEnclosures =
     requires(S& s, System& system, std::size_t i, const Scalar<X>& a, std::span<const X> coefficients) {

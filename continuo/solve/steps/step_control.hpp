@@ -56,30 +56,39 @@ class StepControl final : public Steps<System, X> {
     return take_fixed(limit, options, outcome);
   }
 
-  [[nodiscard]] std::size_t take_quietly(Real limit, Real until, std::size_t most, const Options<X>& options) override {
+  [[nodiscard]] std::size_t take_quietly(const QuietSteps<Real>& wanted, const Options<X>& options) override {
+    if (jumped_ || moved_ || corrects_ || fixed(options) || next_ == 0) return 0;
+    [[maybe_unused]] const auto own = [&](X& slope, std::size_t most) {
+      return detail::OwnSteps<X>{.t = end_,
+                                 .x = x_end_,
+                                 .next = next_,
+                                 .carried = carried_,
+                                 .errors = errors_,
+                                 .slope = slope,
+                                 .limit = wanted.limit,
+                                 .longest = longest_step(wanted.limit, options),
+                                 .until = wanted.until,
+                                 .forward = forward_,
+                                 .most = std::min(most, steps_before_probe()),
+                                 .tolerance = tolerance(options),
+                                 .controller = options.controller,
+                                 .times = wanted.times.data(),
+                                 .has_guards = wanted.has_guards};
+    };
+    std::size_t made = 0;
     if constexpr (detail::TakesManySteps<System, M, X>) {
       constexpr bool ends_with_f = M::tableau.first_same_as_last();
       // What was computed for the polynomial of the last step is f at another rounding of the time.
       const bool has_slope = work_.end_fresh;
-      if (jumped_ || moved_ || corrects_ || fixed(options) || next_ == 0 || has_slope != ends_with_f) return 0;
-      const std::size_t made = system_.template take_steps<M>({.t = end_,
-                                                               .x = x_end_,
-                                                               .next = next_,
-                                                               .carried = carried_,
-                                                               .errors = errors_,
-                                                               .slope = work_.k[M::tableau.stages - 1],
-                                                               .limit = limit,
-                                                               .longest = longest_step(limit, options),
-                                                               .until = until,
-                                                               .forward = forward_,
-                                                               .most = std::min(most, steps_before_probe()),
-                                                               .tolerance = tolerance(options),
-                                                               .controller = options.controller});
-      statistics_.steps += made;
+      if (wanted.has_guards || has_slope != ends_with_f) return 0;
+      made = system_.template take_steps<M>(own(work_.k[M::tableau.stages - 1], wanted.most_unseen));
       statistics_.evaluations += made * (M::tableau.stages - (ends_with_f ? 1 : 0));
-      return made;
+    } else if constexpr (detail::MethodTakesManySteps<System, M, X>) {
+      made = M::take_steps(system_, own(this->scratch_, wanted.most), work_);
+      statistics_.evaluations += made * M::evaluations_of_step(work_);
     }
-    return 0;
+    statistics_.steps += made;
+    return made;
   }
 
   [[nodiscard]] const Interpolant<X, M::dense_degree>& interpolant() {

@@ -24,6 +24,17 @@
 
 namespace continuo {
 
+/// Steps at which nobody looks: none ends at `limit` or beyond `until`, and where guards are watched none has a root of
+/// one in it.
+template <class Real>
+struct QuietSteps {
+  Real limit, until;
+  std::size_t most;         // at most so many, where their ends are noted in `times`,
+  std::size_t most_unseen;  // and so many where they are not
+  std::span<Real> times;    // as many as the first number
+  bool has_guards;
+};
+
 /// The last accepted step and the data for the next one. A step goes from begin() to end(); the next one begins with
 /// the state at end(), unless jump() has set another.
 template <class System, State X>
@@ -116,10 +127,9 @@ class Steps {
     return steps > Real(StepBudget<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
   }
 
-  /// Takes steps at which nobody looks, where the system takes many at once (own_steps.hpp): they end before `until`,
-  /// and there are at most so many. Returns how many; the next one is taken by `take`.
-  [[nodiscard]] virtual std::size_t take_quietly([[maybe_unused]] Real limit, [[maybe_unused]] Real until,
-                                                 [[maybe_unused]] std::size_t most,
+  /// Takes steps at which nobody looks, where the system takes many at once (own_steps.hpp). Returns how many; the next
+  /// one is taken by `take`.
+  [[nodiscard]] virtual std::size_t take_quietly([[maybe_unused]] const QuietSteps<Real>& wanted,
                                                  [[maybe_unused]] const Options<X>& options) {
     return 0;
   }
