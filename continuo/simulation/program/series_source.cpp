@@ -485,7 +485,7 @@ class SeriesWriter {
   template <class Finish>
   void members(const SeriesOperation&, Order order, const Sum& sum, const std::string& p, std::uint32_t count,
                std::string_view begin, Finish&& finish) {
-    line("double s[{}];", count);
+    line("double s[{}];", count + (count % 4 == 3 ? 1 : 0));
     line("{}{};", count == 1 ? "s[0] = " : "", call(sum, order, p, count, begin, count == 1 ? "" : ", s"));
     line("for (long n = 0; n < {}; ++n) {{ const long i = {} + n;", count, begin);
     finish("i", "s[n]");
@@ -632,6 +632,8 @@ class SeriesWriter {
     std::vector<Piece> pieces;
     std::uint32_t begin = 0;
     for (; begin + 4 <= count; begin += 4) pieces.push_back({"four", begin});
+    // Of three, a fourth number is computed that nobody reads: behind the registers of a row there is always one more.
+    if (count - begin == 3) pieces.push_back({"four", begin}), begin += 3;
     if (begin + 2 <= count) pieces.push_back({"two", begin}), begin += 2;
     if (begin < count) pieces.push_back({"double", begin});
     line("INLINE {} {}(const double *a, const double *b, double p, long k, long first, long last{}) {{",
