@@ -375,13 +375,11 @@ class Driver {
     const std::size_t tries = statistics().steps + statistics().rejected;
     if (options_.max_steps < tries + 2) return;
     if (const std::optional<Real> tick = logic_.next_quiet(t_, until)) until = *tick;
-    constexpr std::size_t most_at_once = 64;
-    times_.resize(most_at_once);
     const std::size_t most = options_.max_steps - tries - 1,
                       before_mark = std::max(marks_.next(), tries + 1) - tries - 1;
     const std::size_t made = steps().take_quietly({.limit = limit,
                                                    .until = until,
-                                                   .most = std::min(most, most_at_once),
+                                                   .most = std::min(most, times_.size()),
                                                    .most_unseen = std::min(most, before_mark),
                                                    .times = times_,
                                                    .has_guards = has_guards},
@@ -771,8 +769,8 @@ class Driver {
   Interval<Real> interval_;
   Real t_;
   X x_, before_;
-  std::vector<Real> times_;  // of the ends of quiet steps
-  std::vector<X> samples_;   // the states of the last sample of the guards
+  std::array<Real, 64> times_{};  // of the ends of quiet steps
+  std::vector<X> samples_;        // the states of the last sample of the guards
   X solved_ = x_;
   UnknownsSolver<X> unknowns_{x_};
   Begin begin_;
