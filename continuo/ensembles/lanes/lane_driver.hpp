@@ -296,7 +296,7 @@ class LaneDriver {
   void set_place(std::size_t lane) {
     X x = runs_[lane].x();
     get(x_, lane, x);
-    runs_[lane].set_place(sizes_.t()[lane], x);
+    runs_[lane].set_place(sizes_.t()[lane], std::move(x));
   }
   [[nodiscard]] std::size_t worst_component(std::size_t lane) const {
     std::size_t worst = 0;
@@ -473,7 +473,7 @@ class LaneDriver {
   void arrive_at_end(std::size_t lane) {
     X x = runs_[lane].x();
     get(x_new_, lane, x);
-    runs_[lane].set_place(sizes_.end()[lane], x);
+    runs_[lane].set_place(sizes_.end()[lane], std::move(x));
     runs_[lane].end(Ending::reached_end);
   }
 

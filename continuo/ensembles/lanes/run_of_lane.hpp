@@ -83,7 +83,7 @@ class RunOfLane {
     x_ = std::move(start.x);
     steps_.system().p = std::move(start.p);
     steps_.begin_run(t_, x_, settings_.options);
-    logic_ = begins_with_;
+    if constexpr (has_events) logic_ = begins_with_;
     next_row_ = 0;
     ended_ = false;
     events_ = 0;
@@ -178,14 +178,14 @@ class RunOfLane {
   }
   [[nodiscard]] bool ended() const { return ended_; }
   /// Sets where it is, for what happens next.
-  void set_place(double t, const X& x) {
+  void set_place(double t, X&& x) {
     t_ = t;
-    x_ = x;
+    x_ = std::move(x);
   }
-  /// The result, with the last state.
+  /// The result, with the last state. The run has none of its own until it begins anew.
   [[nodiscard]] Result&& finish() {
-    result_.x = x_;
-    result_.p = steps_.system().p;
+    result_.x = std::move(x_);
+    result_.p = std::move(steps_.system().p);
     return std::move(result_);
   }
   [[nodiscard]] std::size_t events() const { return events_; }

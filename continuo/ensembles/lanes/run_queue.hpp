@@ -54,11 +54,16 @@ class RunQueue {
       return;
     }
     const std::lock_guard<std::mutex> lock(mutex_);
-    waiting_[run % waiting_.size()] = std::move(result);
     std::size_t next = delivered_.load(std::memory_order_relaxed);
+    if (run == next) {
+      deliver(result);
+      ++next;
+    } else {
+      waiting_[run % waiting_.size()] = std::move(result);
+    }
     for (; next < count_ && waiting_[next % waiting_.size()]; ++next) {
-      const std::optional<Result> one = std::exchange(waiting_[next % waiting_.size()], std::nullopt);
-      if (!stopped_ && !options_.finished(*one)) stopped_ = true;
+      deliver(*waiting_[next % waiting_.size()]);
+      waiting_[next % waiting_.size()].reset();
     }
     delivered_.store(next, std::memory_order_release);
     changed_.notify_all();
@@ -79,6 +84,10 @@ class RunQueue {
   [[nodiscard]] bool complete() const { return !stopped_ && next_.load() >= count_; }
 
  private:
+  void deliver(const Result& result) {
+    if (!stopped_ && !options_.finished(result)) stopped_ = true;
+  }
+
   static constexpr std::size_t window = 4096;  // runs
 
   std::size_t count_;
