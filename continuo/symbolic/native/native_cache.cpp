@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -24,9 +24,10 @@ namespace {
 std::optional<std::string> read_whole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream text;
+  text << stream.rdbuf();  // in blocks
   if (stream.bad()) return std::nullopt;
-  return text;
+  return std::move(text).str();
 }
 
 std::string with_hash(std::string_view text, std::string_view shared_object) {
@@ -119,7 +120,7 @@ fs::path NativeCache::place(std::string_view text, std::string_view ending) cons
 
 std::optional<fs::path> NativeCache::find(std::string_view text) const {
   if (!status_) return std::nullopt;
-  const fs::path source = place(text, ".c"), object = place(text, ".so");
+  const fs::path source = place(text, ".c"), object = fs::path(source).replace_extension(".so");
   if (!is_own_file(source) || !is_own_file(object)) return std::nullopt;
   const std::optional<std::string> kept = read_whole(source), code = read_whole(object);
   if (!kept || !code || *kept != with_hash(text, *code)) return std::nullopt;
