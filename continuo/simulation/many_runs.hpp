@@ -3,7 +3,8 @@
 // whatever the others are.
 //
 //   const ManyRuns runs(program);
-//   runs.make(experiments, {}, [&](std::size_t i, JudgedRun run) { ...; return true; });
+//   const auto set = [&](std::size_t i, Experiment& one) { one.parameters["k"] = stiffnesses[i]; };
+//   runs.make({.count = stiffnesses.size(), .set = set}, {}, [&](std::size_t i, JudgedRun run) { ...; return true; });
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -19,10 +20,18 @@ namespace continuo::model {
 
 class LaneCode;  // simulation/together/lane_code.hpp
 
+/// Experiments that differ only in the values of some parameters, inputs and initial values.
+struct ManyExperiments {
+  std::size_t count = 0;
+  Experiment common{};  // what is the same in all of them
+  /// Makes of one of these experiments, or of `common`, number `i`: gives each varied name its value.
+  std::function<void(std::size_t i, Experiment& one)> set{};
+};
+
 /// A run without its rows, or why there is none: as in Simulated.
 struct JudgedRun {
   std::optional<Outcome<double>> outcome{};  // none where the run could not begin
-  std::vector<CheckResult> checks{};
+  std::vector<double> readings{};            // the values that checks have read; NaN where there is none
   std::vector<Diagnostic> diagnostics{};
 };
 
@@ -41,10 +50,9 @@ class ManyRuns {
 
   /// Makes the runs, which are handed over in their order. `watchers`: none, or for each run one that sees it, or null.
   /// Together go those, next to each other in the list, that have an explicit Runge-Kutta method, or without events
-  /// `rodas5p`, and agree in all but parameters, inputs and initial values. A run that fails is made once more by
-  /// `simulate`, which says why.
-  void make(std::span<const Experiment> experiments, std::span<MotionWatcher* const> watchers,
-            const OnJudged& done) const;
+  /// `rodas5p`, and whose ends, steps and tolerances do not depend on what is varied, or agree. A run that fails is
+  /// made once more by `simulate`, which says why.
+  void make(const ManyExperiments& experiments, std::span<MotionWatcher* const> watchers, const OnJudged& done) const;
 
  private:
   std::shared_ptr<const ModelProgram> program_;

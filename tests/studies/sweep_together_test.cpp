@@ -268,6 +268,19 @@ TEST(SweepTogether, WhatIsVariedMayChangeTheEndAndTheSteps) {
   }
 }
 
+/// Runs of one plan: what is varied decides other values at the start, or none.
+TEST(SweepTogether, StartsFollowWhatIsVaried) {
+  for (const char* varied : {"k in (1, 2, 3)", "c in (1, 2, 3)", "u in (0, 1)", "y(0) in (1, 2)",
+                             "u in (0, 1); x(0) in (4, 5)", "c in (1, 2); k in (1, 3); y(0) in (0, 1)"}) {
+    SCOPED_TRACE(varied);
+    const PreparedSweep sweep = prepared_sweep(fmt::format(
+        "param k = 1\nparam c = 2*k\nparam d = c + 1\ninput u = 0.5\nx' = -d*x + u\ny' = x - k*y\n"
+        "x(0) = c + u\ny(0) = 3\nrun 0..1 method dop853\nsweep {{ {}\n  keep x at end, y at 0, d*x at end }}\n",
+        varied));
+    expect_the_runs_one_by_one(sweep, all_runs(sweep));
+  }
+}
+
 TEST(SweepTogether, EndsWhereNoMoreRunsAreWanted) {
   std::mt19937 random(9);
   const PreparedSweep sweep = prepared_sweep(random_model(random, "method tsitouras5"));

@@ -116,7 +116,8 @@ class Study {
   Study(const SweepOptions& options, const PreparedSweep& sweep)
       : options_(options),
         sweep_(sweep),
-        identity_(identity_of(sweep, version_of_program())),
+        identity_(options.out.empty() ? SweepIdentity{.runs = sweep.runs(), .width = sweep.width()}
+                                      : identity_of(sweep, version_of_program())),
         report_(sweep),
         indices_(sweep),
         pictures_(sweep) {}
@@ -189,7 +190,7 @@ class Study {
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       report_.add(first + i, outcomes[i]);
       indices_.add(outcomes[i]);
-      pictures_.add(first + i, outcomes[i]);
+      if (!options_.plot.empty()) pictures_.add(first + i, outcomes[i]);
       if (table) table->add(first + i, outcomes[i]);
     }
     return table ? table->status() : Status();
@@ -346,7 +347,7 @@ class Study {
 
   const SweepOptions& options_;
   const PreparedSweep& sweep_;
-  SweepIdentity identity_;
+  SweepIdentity identity_;  // without a hash where nothing is written
   SweepReport report_;
   SweepIndices indices_;
   SweepPictures pictures_;

@@ -2,6 +2,7 @@
 // Evaluates the checks of a model on a finished run, and lists the times that they need.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,8 @@
 namespace continuo::model {
 
 namespace {
+
+constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
 
 double snapped(double t, const Plan& plan) {
   return std::abs(t - plan.to) <= 1e-12 * std::max(std::abs(plan.to), std::abs(plan.from)) ? plan.to : t;
@@ -44,6 +47,20 @@ class Judge {
   std::vector<CheckResult> results() {
     std::vector<CheckResult> all;
     for (const Check& check : model_.checks) all.push_back(result(check));
+    return all;
+  }
+
+  std::vector<double> readings() {
+    std::vector<double> all;
+    all.reserve(model_.checks.size());
+    std::vector<double> variables;
+    std::string message;
+    for (const Check& check : model_.checks) {
+      variables = run_.plan.variables;
+      const bool can_read = succeeded(run_.outcome.ending) && place_moment(check, variables, message) &&
+                            place_samples(check, variables, message);
+      all.push_back(can_read ? measured(check, variables) : no_reading);
+    }
     return all;
   }
 
@@ -199,6 +216,16 @@ std::vector<CheckResult> judge(const Model& model, const Run& run, const RunReco
 std::vector<CheckResult> judge(const Model& model, const Run& run, std::span<const SampledState> samples,
                                std::span<const Extremes> extremes) {
   return Judge(model, run, samples, extremes).results();
+}
+
+std::vector<double> readings(const Model& model, const Run& run, std::span<const SampledState> samples) {
+  return Judge(model, run, samples, {}).readings();
+}
+
+std::vector<double> readings_of(std::span<const CheckResult> checks) {
+  std::vector<double> all;
+  for (const CheckResult& check : checks) all.push_back(check.evaluated ? check.value : no_reading);
+  return all;
 }
 
 }  // namespace continuo::model

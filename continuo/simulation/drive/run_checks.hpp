@@ -18,5 +18,9 @@ namespace continuo::model {
 /// and the extremes of what is to hold always.
 [[nodiscard]] std::vector<CheckResult> judge(const Model& model, const Run& run, std::span<const SampledState> samples,
                                              std::span<const Extremes> extremes);
+/// Only the values that the checks of such a run read; NaN where there is none. No check is of what holds always.
+[[nodiscard]] std::vector<double> readings(const Model& model, const Run& run, std::span<const SampledState> samples);
+/// The same of checks that have been judged.
+[[nodiscard]] std::vector<double> readings_of(std::span<const CheckResult> checks);
 
 }  // namespace continuo::model

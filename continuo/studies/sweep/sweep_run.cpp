@@ -11,6 +11,7 @@
 #include <continuo/language/load.hpp>
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/runs/watched_run.hpp>
+#include <continuo/simulation/drive/run_checks.hpp>
 #include <continuo/simulation/recorded_run.hpp>
 #include <continuo/studies/sweep/sweep_run.hpp>
 
@@ -121,32 +122,40 @@ std::vector<std::string> PreparedSweep::dimension_names() const {
   return names;
 }
 
-std::vector<double> PreparedSweep::values(std::uint64_t run) const {
-  std::vector<double> values(plan_->axes.size());
+template <class Set>
+void PreparedSweep::for_each_value(std::uint64_t run, const Set& set) const {
   std::uint64_t rest = run;
   for (std::size_t d = dimensions_.size(); d-- > 0;) {
     const Dimension& dimension = dimensions_[d];
     const double u = design_ ? design_->at(run, d) : 0;
     if (dimension.distribution) {
-      values[dimension.axes.front()] = quantile(*dimension.distribution, u);
+      set(dimension.axes.front(), quantile(*dimension.distribution, u));
       continue;
     }
     const auto drawn = static_cast<std::size_t>(u * static_cast<double>(dimension.count));
     const std::size_t place =
         design_ ? std::min(drawn, dimension.count - 1) : static_cast<std::size_t>(rest % dimension.count);
     rest /= dimension.count;
-    for (const std::size_t a : dimension.axes) values[a] = std::get<SweepPoints>(plan_->axes[a].values).values[place];
+    for (const std::size_t a : dimension.axes) set(a, std::get<SweepPoints>(plan_->axes[a].values).values[place]);
   }
+}
+
+std::vector<double> PreparedSweep::values(std::uint64_t run) const {
+  std::vector<double> values(plan_->axes.size());
+  for_each_value(run, [&](std::size_t axis, double value) { values[axis] = value; });
   return values;
+}
+
+void PreparedSweep::set_run(std::uint64_t run, model::Experiment& experiment) const {
+  for_each_value(run, [&](std::size_t a, double value) {
+    const SweepAxis& axis = plan_->axes[a];
+    (axis.kind == SweepAxis::Kind::initial ? experiment.initial : experiment.parameters)[axis.name] = value;
+  });
 }
 
 model::Experiment PreparedSweep::experiment(std::uint64_t run) const {
   model::Experiment made = experiment_;
-  const std::vector<double> of_axes = values(run);
-  for (std::size_t a = 0; a < of_axes.size(); ++a) {
-    const SweepAxis& axis = plan_->axes[a];
-    (axis.kind == SweepAxis::Kind::initial ? made.initial : made.parameters)[axis.name] = of_axes[a];
-  }
+  set_run(run, made);
   return made;
 }
 
@@ -168,17 +177,17 @@ std::optional<PreparedSweep::Readable> PreparedSweep::read_anew(const model::Exp
   return std::nullopt;
 }
 
-std::vector<double> PreparedSweep::kept_of(const Readable& readable, std::span<const model::CheckResult> checks,
-                                           const KeptValues& watched) const {
+std::vector<double> PreparedSweep::kept_of(const Readable& readable, std::vector<double> readings,
+                                           const KeptValues* watched) const {
+  if (readable.nodes->empty() && readings.size() == width_) return readings;
   std::vector<double> kept;
   kept.reserve(width_);
   std::size_t reading = 0, seen = 0;
   for (const SweepKeep& keep : readable.program->model.sweep->keeps) {
     if (keep.kind == SweepKeep::Kind::reading) {
-      const model::CheckResult& result = checks[reading++];
-      kept.push_back(result.evaluated ? result.value : no_value);
+      kept.push_back(readings[reading++]);
     } else {
-      const auto values = watched.of(seen++);
+      const auto values = watched->of(seen++);
       kept.insert(kept.end(), values.begin(), values.end());
     }
   }
@@ -190,12 +199,11 @@ SweepOutcome PreparedSweep::nothing() const {
   return {.ending = Ending::invalid_input, .t = no_value, .kept = std::vector(width_, no_value), .message = {}};
 }
 
-void PreparedSweep::take(const Readable& readable, const Outcome<double>& end,
-                         std::span<const model::CheckResult> checks, const KeptValues& watched,
-                         SweepOutcome& outcome) const {
+void PreparedSweep::take(const Readable& readable, const Outcome<double>& end, std::vector<double> readings,
+                         const KeptValues* watched, SweepOutcome& outcome) const {
   outcome.ending = end.ending;
   outcome.t = end.t;
-  if (succeeded(end.ending)) outcome.kept = kept_of(readable, checks, watched);
+  if (succeeded(end.ending)) outcome.kept = kept_of(readable, std::move(readings), watched);
 }
 
 SweepOutcome PreparedSweep::run(std::uint64_t number) const {
@@ -216,7 +224,7 @@ SweepOutcome PreparedSweep::run(std::uint64_t number) const {
   }
   outcome.message = first_error(simulated.diagnostics);
   if (!simulated.run) return outcome;
-  take(used, simulated.run->outcome, simulated.run->checks, watched, outcome);
+  take(used, simulated.run->outcome, model::readings_of(simulated.run->checks), &watched, outcome);
   if (succeeded(outcome.ending) && !is_shown) {
     outcome.kept.assign(width_, no_value);
     outcome.ending = Ending::cannot_continue;
@@ -231,19 +239,19 @@ void PreparedSweep::run_each(std::span<const std::uint64_t> runs, const OnOutcom
       if (!done(run(number))) return;
     return;
   }
-  std::vector<model::Experiment> experiments;
-  std::vector<KeptValues> watched(runs.size(), KeptValues(*readable_.nodes));
+  std::vector<KeptValues> watched(readable_.nodes->empty() ? 0 : runs.size(), KeptValues(*readable_.nodes));
   std::vector<model::MotionWatcher*> watchers;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    experiments.push_back(experiment(runs[i]));
-    if (!readable_.nodes->empty()) watchers.push_back(&watched[i]);
-  }
-  many_->make(experiments, watchers, [&](std::size_t i, const model::JudgedRun& judged) {
-    SweepOutcome outcome = nothing();
-    outcome.message = first_error(judged.diagnostics);
-    if (judged.outcome) take(readable_, *judged.outcome, judged.checks, watched[i], outcome);
-    return done(std::move(outcome));
-  });
+  for (KeptValues& one : watched) watchers.push_back(&one);
+  const auto set = [&](std::size_t i, model::Experiment& one) { set_run(runs[i], one); };
+  many_->make({.count = runs.size(), .common = experiment_, .set = set}, watchers,
+              [&](std::size_t i, model::JudgedRun judged) {
+                SweepOutcome outcome{.ending = Ending::invalid_input, .t = no_value};
+                const KeptValues* const seen = watched.empty() ? nullptr : &watched[i];
+                if (judged.outcome) take(readable_, *judged.outcome, std::move(judged.readings), seen, outcome);
+                if (!judged.outcome || !succeeded(judged.outcome->ending)) outcome.kept.assign(width_, no_value);
+                outcome.message = first_error(judged.diagnostics);
+                return done(std::move(outcome));
+              });
 }
 
 std::string PreparedSweep::identity() const {

@@ -88,10 +88,15 @@ class PreparedSweep {
   [[nodiscard]] Status add_dimensions();
   [[nodiscard]] std::optional<Readable> read_anew(const model::Experiment& experiment, SweepOutcome& outcome) const;
   [[nodiscard]] SweepOutcome nothing() const;
-  void take(const Readable& readable, const Outcome<double>& end, std::span<const model::CheckResult> checks,
-            const KeptValues& watched, SweepOutcome& outcome) const;
-  [[nodiscard]] std::vector<double> kept_of(const Readable& readable, std::span<const model::CheckResult> checks,
-                                            const KeptValues& watched) const;
+  /// Gives what is varied the values of this run.
+  void set_run(std::uint64_t run, model::Experiment& experiment) const;
+  /// Calls `set(axis, value)` for the values of this run.
+  template <class Set>
+  void for_each_value(std::uint64_t run, const Set& set) const;
+  void take(const Readable& readable, const Outcome<double>& end, std::vector<double> readings,
+            const KeptValues* watched, SweepOutcome& outcome) const;
+  [[nodiscard]] std::vector<double> kept_of(const Readable& readable, std::vector<double> readings,
+                                            const KeptValues* watched) const;
 
   std::shared_ptr<const model::SweepPlan> plan_;
   Readable readable_;

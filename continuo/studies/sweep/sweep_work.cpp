@@ -12,8 +12,8 @@ namespace continuo::studies {
 namespace {
 
 constexpr std::size_t most_waiting = 64;  // times as many chunks as a thread takes at once may be ahead of their turn
-constexpr std::uint64_t runs_at_once = 256;  // where runs can go together
-constexpr std::size_t turns_left = 4;        // of each thread, so that none is left with much at the end
+constexpr std::uint64_t runs_at_once = 1024, runs_at_once_of_process = 256;  // where runs can go together
+constexpr std::size_t turns_left = 4;  // of each thread, so that none is left with much at the end
 
 /// What all threads share: which chunk is next, and whose turn it is.
 class Hands {
@@ -21,7 +21,8 @@ class Hands {
   Hands(const PreparedSweep& sweep, const SweepIdentity& identity, const SweepWork& work)
       : sweep_(sweep), identity_(identity), work_(work) {
     if (sweep.goes_together())
-      at_once_ = static_cast<std::size_t>(std::max<std::uint64_t>(1, runs_at_once / identity.per_chunk()));
+      at_once_ = static_cast<std::size_t>(
+          std::max<std::uint64_t>(1, (work.take ? runs_at_once_of_process : runs_at_once) / identity.per_chunk()));
   }
 
   void go() {
@@ -52,7 +53,10 @@ class Hands {
       if (is_all_taken_) break;
       places.push_back(static_cast<std::size_t>(place));
       const std::size_t left = work_.chunks.size() - places.front();
-      wanted = std::clamp<std::size_t>(left / (turns_left * std::max<std::size_t>(work_.threads, 1)), 1, at_once_);
+      const bool is_alone = work_.threads <= 1 && !work_.take;  // nobody else waits for something to do
+      wanted = is_alone ? at_once_
+                        : std::clamp<std::size_t>(left / (turns_left * std::max<std::size_t>(work_.threads, 1)), 1,
+                                                  at_once_);
     }
     taken_ += places.size();
     return places;
@@ -61,17 +65,23 @@ class Hands {
   /// Makes these chunks and hands each on when it is whole. False where they were interrupted.
   bool make(const std::vector<std::size_t>& places) {
     std::vector<std::uint64_t> runs;
-    for (const std::size_t place : places)
-      for (std::uint64_t i = 0; i < identity_.size(work_.chunks[place]); ++i)
-        runs.push_back(identity_.first_run(work_.chunks[place]) + i);
+    for (const std::size_t place : places) {
+      const std::uint64_t first = identity_.first_run(work_.chunks[place]), size = identity_.size(work_.chunks[place]);
+      for (std::uint64_t i = 0; i < size; ++i) runs.push_back(first + i);
+    }
     std::size_t whole = 0;
     std::vector<SweepOutcome> made;
+    std::uint64_t wanted = identity_.size(work_.chunks[places.front()]);
     if (work_.interrupt && work_.interrupt->load()) return false;
     sweep_.run_each(runs, [&](SweepOutcome outcome) {
       if (outcome.ending == Ending::interrupted) return false;
       made.push_back(std::move(outcome));
       count();
-      if (made.size() == identity_.size(work_.chunks[places[whole]])) hand_on(places[whole++], std::exchange(made, {}));
+      if (made.size() == wanted) {
+        hand_on(places[whole++], std::exchange(made, {}));
+        if (whole < places.size()) wanted = identity_.size(work_.chunks[places[whole]]);
+        made.reserve(static_cast<std::size_t>(wanted));
+      }
       return !(work_.interrupt && work_.interrupt->load());
     });
     return whole == places.size();
