@@ -34,13 +34,18 @@ CExpressions::Id CExpressions::operation(tape::Code code, std::uint32_t table, s
 void CExpressions::name_parts(const std::function<std::string(const std::string&)>& name) {
   for (Node& node : nodes_) {
     if (node.code == tape::Code::stop) continue;
-    std::array<std::string, 4> operand;
-    for (std::size_t k = 0; k < operands_of(node.code); ++k) operand[k] = nodes_[node.operands[k]].text;
-    node.text = is_table(node.code) ? table_text(node.code, node.table, operand[0], in_lanes_)
-                                    : operation_text(node.code, operand, in_lanes_);
+    node.text = text_of(node);
     const bool is_long = node.text.size() > longest_expression && !node.is_whole;
     if (node.readers > 1 || is_long) node.text = name(node.text);
   }
+}
+
+std::string CExpressions::text_of(const Node& node) const {
+  std::array<std::string, 4> operand;
+  for (std::size_t k = 0; k < operands_of(node.code); ++k) operand[k] = nodes_[node.operands[k]].text;
+  if (is_table(node.code)) return table_text(node.code, node.table, operand[0], in_lanes_);
+  std::string text = fused_ ? fused_operation_text(node.code, operand, in_lanes_) : std::string();
+  return text.empty() ? operation_text(node.code, std::move(operand), in_lanes_) : text;
 }
 
 }  // namespace continuo::model

@@ -17,7 +17,8 @@ class CExpressions {
  public:
   using Id = std::uint32_t;
 
-  explicit CExpressions(bool in_lanes) : in_lanes_(in_lanes) {}
+  /// `fused`: a product and a sum in one operation of the tape are rounded once.
+  CExpressions(bool in_lanes, bool fused) : in_lanes_(in_lanes), fused_(fused) {}
 
   /// A number, a name or an element of an array.
   [[nodiscard]] Id leaf(std::string text);
@@ -49,7 +50,9 @@ class CExpressions {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  bool in_lanes_;
+  [[nodiscard]] std::string text_of(const Node& node) const;
+
+  bool in_lanes_, fused_;
   std::vector<Node> nodes_;
   std::map<std::string, Id> leaves_;
   std::map<Key, Id> operations_;

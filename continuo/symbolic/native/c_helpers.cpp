@@ -24,6 +24,7 @@ constexpr Helper helpers[] = {
     {"maximum", "static inline double maximum(double a, double b) { return a < b ? b : a; }\n"},
     {"hypotenuse", "static inline double hypotenuse(double a, double b) { return sqrt(a*a + b*b); }\n"},
     {"modulo", "static inline double modulo(double a, double b) { return a - b*floor(a/b); }\n"},
+    {"fused", "static inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }\n"},
     {"sign_of", "static inline double sign_of(double a) { return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : a; }\n"},
 };
 
@@ -126,6 +127,20 @@ constexpr Helper lane_choices[] = {
     {"each_minimum", "(lanes a, lanes b) { return choose(b < a, b, a); }"},
     {"each_maximum", "(lanes a, lanes b) { return choose(a < b, b, a); }"},
     {"each_fabs", "(lanes a) { return (lanes)((lane_masks)a & ~(lane_masks)all_lanes(-0.0)); }"},
+    // Compilers before gcc 15 make eight numbers of the loop, and no vector.
+    {"each_fused",
+     "(lanes a, lanes b, lanes c) {\n"
+     "#if defined(__AVX512F__)\n"
+     "  return __builtin_ia32_vfmaddpd512_mask(a, b, c, -1, 4);\n"
+     "#elif defined(__FMA__) && WIDTH == 4\n"
+     "  return __builtin_ia32_vfmaddpd256(a, b, c);\n"
+     "#elif defined(__FMA__)\n"
+     "  return __builtin_ia32_vfmaddpd(a, b, c);\n"
+     "#else\n"
+     "  lanes y;\n"
+     "  for (int i = 0; i < WIDTH; ++i) y[i] = __builtin_fma(a[i], b[i], c[i]);\n"
+     "  return y;\n"
+     "#endif\n}"},
     {"each_sign_of",
      "(lanes a) {\n"
      "  return choose(a > all_lanes(0.0), all_lanes(1.0), choose(a < all_lanes(0.0), all_lanes(-1.0), a));\n}"},

@@ -80,6 +80,32 @@ std::string_view pattern_of(Code code) {
   }
 }
 
+/// {0} is the function of a fused operation. Of two products the second one is rounded.
+std::string_view fused_pattern_of(Code code) {
+  switch (code) {
+    case Code::multiply_add:
+      return "{0}({1}, {2}, {3})";
+    case Code::multiply_subtract:
+      return "{0}({1}, {2}, -{3})";
+    case Code::subtract_product:
+      return "{0}(-{1}, {2}, {3})";
+    case Code::negated_multiply_add:
+      return "-{0}({1}, {2}, {3})";
+    case Code::sum_of_products:
+      return "{0}({1}, {2}, {3}*{4})";
+    case Code::difference_of_products:
+      return "{0}({1}, {2}, -({3}*{4}))";
+    case Code::negated_sum_of_products:
+      return "-{0}({1}, {2}, {3}*{4})";
+    case Code::sum_less_product:
+      return "{0}(-{1}, {2}, {3} + {4})";
+    case Code::less_product_plus:
+      return "{0}(-{1}, {2}, {3}) + {4}";
+    default:
+      return {};
+  }
+}
+
 std::string_view function_of(Code code) {
   switch (code) {
     case Code::square_root:
@@ -196,6 +222,18 @@ std::string operation_text(Code code, std::array<std::string, 4> operand, bool i
   for (std::size_t k = 1; k < tape::operands(code); ++k) arguments += ", " + operand[k];
   if (!choice.empty()) return fmt::format("{}({})", choice, arguments);
   return fmt::format("{}{}({})", in_lanes ? "each_" : "", function_of(code), arguments);
+}
+
+std::string fused_text(std::string_view a, std::string_view b, std::string_view c, bool in_lanes) {
+  return fmt::format("{}({}, {}, {})", in_lanes ? "each_fused" : "fused", a, b, c);
+}
+
+std::string fused_operation_text(Code code, std::array<std::string, 4> operand, bool in_lanes) {
+  const std::string_view pattern = fused_pattern_of(code);
+  if (pattern.empty()) return {};
+  for (std::size_t k = 0; k < tape::operands(code); ++k) operand[k] = bracketed(operand[k]);
+  return fmt::format(fmt::runtime(pattern), in_lanes ? "each_fused" : "fused", operand[0], operand[1], operand[2],
+                     operand[3]);
 }
 
 std::string table_text(Code code, std::uint32_t table, std::string_view x, bool in_lanes) {

@@ -225,7 +225,7 @@ class TapeWriter {
 
   void name_value(std::size_t value) {
     const ValueRef ref = values_.ref(value);
-    CExpressions expressions(options_.in_lanes);
+    CExpressions expressions(options_.in_lanes, options_.fused);
     const CExpressions::Id id = expression(expressions, {ref, elements_of(ref, true)}, 0, true);
     expressions.name_parts([&](const std::string& text) { return name(text, "  "); });
     names_of_values_[value] = name(expressions.text_of(id), "  ");
@@ -489,7 +489,7 @@ class TapeWriter {
     write(indent.empty() ? "  " : indent, std::span(&statement, 1), expand);
   }
   void write(const std::string& indent, std::span<const Statement> statements, bool expand) {
-    CExpressions expressions(options_.in_lanes);
+    CExpressions expressions(options_.in_lanes, options_.fused);
     std::vector<CExpressions::Id> ids;
     for (const Statement& s : statements) ids.push_back(expression(expressions, s, 1, expand));
     expressions.name_parts([&](const std::string& text) { return name(text, indent); });
@@ -513,6 +513,10 @@ class TapeWriter {
 
 CFunction c_function(const Tape& tape, const CFunctionOptions& options) {
   return TapeWriter(tape, options).function();
+}
+
+bool is_without_loops(const Tape& tape) {
+  return c_function(tape, {.signature = ""}).text.find(" for (int ") == std::string::npos;
 }
 
 bool is_worth_compiling(const Tape& tape) {

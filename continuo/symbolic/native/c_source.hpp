@@ -38,6 +38,8 @@ struct CFunctionOptions {
   /// Whether registers, variables and outputs have the type `lanes` of c_lane_helpers, a number for each of several
   /// runs. Then the registers are those of the tape.
   bool in_lanes = false;
+  /// Whether a product and a sum in one operation of the tape are rounded once: other bits than those of the tape.
+  bool fused = false;
   /// A comment behind the k-th output; null: none.
   std::function<std::string(std::size_t)> output_comment = {};
 };
@@ -50,6 +52,9 @@ struct CFunction {
 /// A function that computes what Tape::evaluate does, and writes the outputs to the array `y`. Its cost is a few passes
 /// over the tape.
 [[nodiscard]] CFunction c_function(const Tape& tape, const CFunctionOptions& options);
+
+/// Whether the body of a function of this tape has no loops.
+[[nodiscard]] bool is_without_loops(const Tape& tape);
 
 /// The helpers that functions of this text call (`minimum`, `table_3`, ...), with the tables of the tape. To be written
 /// before the functions, once for all tapes of the same tables.

@@ -61,7 +61,11 @@ std::string rates_function(const StepText& step) {
       "static inline __attribute__(({})) void rates(lanes *restrict r, const lanes *restrict x, "
       "lanes *restrict y)",
       is_short(tape, step.formula()) ? "always_inline" : "noinline");
-  return c_function(tape, {.signature = signature, .arrays = states, .in_lanes = !step.is_single()}).text;
+  return c_function(tape, {.signature = signature,
+                           .arrays = states,
+                           .in_lanes = !step.is_single(),
+                           .fused = step.fusing() != Fusing::none})
+      .text;
 }
 
 void keep_stage(StepText& step, std::size_t j) {
@@ -137,12 +141,12 @@ std::string whole_text(const StepText& step) {
 
 }  // namespace
 
-std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula) {
-  return whole_text({tape, formula, TapeLanes::width});
+std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula, Fusing fusing) {
+  return whole_text({tape, formula, TapeLanes::width, fusing});
 }
 
-std::string c_step(const Tape& tape, const CStepFormula& formula) {
-  return whole_text({tape, formula, 1});
+std::string c_step(const Tape& tape, const CStepFormula& formula, Fusing fusing) {
+  return whole_text({tape, formula, 1, fusing});
 }
 
 bool is_worth_a_step(const Tape& tape, const CStepFormula& formula) {

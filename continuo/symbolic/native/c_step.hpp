@@ -5,6 +5,7 @@
 //
 // The operations are those of ExplicitRungeKutta (methods/explicit_rk/) in the same order, so the bits are the same.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct CStepFormula {
   std::vector<double> error{};           // their weights in the estimated error; empty where there is none
   std::vector<double> second_error{};    // of the second estimate that Dop853 has; else empty
   bool ends_with_f = false;              // the last stage is f at the end of the step
+};
+
+/// What is computed by fused operations: a product and a sum are rounded once, and the bits are others.
+enum class Fusing : std::uint8_t {
+  none,
+  equations,
+  steps,  // the equations, and the sums of stages and errors
 };
 
 /// What a step of eight runs, or of one, begins with and where it writes: of each quantity the numbers of all runs, one
@@ -68,9 +76,10 @@ using NativeLaneEvaluation = long long (*)(double* registers, const double* stat
                                            const LaneStep* step, const LaneSteps* steps);
 
 /// The text of the function `evaluate`, but for what every text for a C compiler of ours begins with.
-[[nodiscard]] std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula);
+[[nodiscard]] std::string c_lane_evaluation(const Tape& tape, const CStepFormula& formula,
+                                            Fusing fusing = Fusing::none);
 /// The same for one run, whose registers are those of the tape.
-[[nodiscard]] std::string c_step(const Tape& tape, const CStepFormula& formula);
+[[nodiscard]] std::string c_step(const Tape& tape, const CStepFormula& formula, Fusing fusing = Fusing::none);
 
 /// Whether one run gains by it: a state that stays near to the processor from stage to stage.
 [[nodiscard]] bool is_worth_a_step(const Tape& tape, const CStepFormula& formula);

@@ -1,5 +1,7 @@
 // Decides when a tape or a function is worth compiling, has it compiled beside the run, and puts the machine code in
 // its place.
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
@@ -64,11 +66,12 @@ class TemporaryFolder {
 };
 
 /// What Tape::evaluate does, as a function of C.
-std::string function_of(const Tape& tape) {
+std::string function_of(const Tape& tape, Fusing fusing) {
   const CArray states[] = {{"x", tape.states_begin(), tape.states_end()}};
   return c_function(tape,
                     {.signature = "void evaluate(double *restrict r, const double *restrict x, double *restrict y)",
-                     .arrays = states})
+                     .arrays = states,
+                     .fused = fusing != Fusing::none})
       .text;
 }
 
@@ -78,6 +81,30 @@ std::string whole_text(const std::string& functions, const Tape& tape) {
 }
 
 }  // namespace
+
+std::optional<NativeUse> native_use_named(std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, NativeUse>, 4> words{{{"auto", NativeUse::automatic},
+                                                                         {"always", NativeUse::always},
+                                                                         {"fused", NativeUse::fused},
+                                                                         {"never", NativeUse::never}}};
+  const auto found = std::ranges::find(words, word, &std::pair<std::string_view, NativeUse>::first);
+  return found == words.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool has_fused_operations() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("fma") != 0;
+#elif defined(__aarch64__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+std::string why_not(NativeUse use) {
+  if (use != NativeUse::fused || has_fused_operations()) return {};
+  return "this processor has no fused operations (fma); take `always`, which has the bits of a tape";
+}
 
 NativeCompiler::NativeCompiler(NativeOptions options) : options_(std::move(options)) {}
 
@@ -91,19 +118,38 @@ NativeCompiler::Report NativeCompiler::report() const {
   return report_;
 }
 
+std::string NativeCompiler::missing() const {
+  const std::lock_guard lock(mutex_);
+  if (options_.use != NativeUse::fused || report_.failed == 0) return {};
+  return report_.trouble.empty() ? "no machine code could be made" : report_.trouble;
+}
+
 void NativeCompiler::note_trouble(const std::string& what) {
   const std::lock_guard lock(mutex_);
   if (report_.trouble.empty()) report_.trouble = what;
 }
 
-void NativeCompiler::watch(const std::shared_ptr<const Tape>& tape) {
+void NativeCompiler::note_failure(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  // It matters more than a cache that cannot be used.
+  if (report_.failed++ == 0) report_.trouble = what;
+}
+
+Fusing NativeCompiler::fused_of(Fusing allowed, const Tape& tape, const CStepFormula& formula) const {
+  if (options_.use != NativeUse::fused || allowed == Fusing::none) return Fusing::none;
+  if (!is_worth_compiling(tape) || !is_without_loops(tape)) return Fusing::none;
+  // Of one run and of many alike: where one run has no step in machine code, neither has fused ones.
+  return allowed == Fusing::steps && !is_worth_a_step(tape, formula) ? Fusing::equations : allowed;
+}
+
+void NativeCompiler::watch(const std::shared_ptr<const Tape>& tape, Fusing fusing) {
   if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return;
-  if (options_.use == NativeUse::always) return make_now(job_of(tape), {});
+  if (waits()) return make_now(job_of(tape, fused_of(fusing, *tape, {})), {});
   tape->notify_of_use(operations_before_cache,
                       [compiler = weak_from_this(), of = std::weak_ptr(tape)](std::uint64_t operations) {
                         const auto self = compiler.lock();
                         const auto used = of.lock();
-                        return self && used ? self->after(operations, job_of(used)) : 0;
+                        return self && used ? self->after(operations, job_of(used, Fusing::none)) : 0;
                       });
 }
 
@@ -121,21 +167,26 @@ std::shared_ptr<NativeFunction> NativeCompiler::function(const std::string& key,
   return made;
 }
 
-std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape,
-                                                          CStepFormula formula) {
+std::shared_ptr<NativeFunction> NativeCompiler::lane_code(const std::shared_ptr<const Tape>& tape, CStepFormula formula,
+                                                          Fusing fusing) {
   const auto lanes = std::make_shared<NativeFunction>();
   if (options_.use == NativeUse::never || !is_worth_compiling(*tape)) return lanes;
-  provide(lanes, [tape, formula = std::move(formula)] { return whole_text(c_lane_evaluation(*tape, formula), *tape); });
+  fusing = fused_of(fusing, *tape, formula);
+  provide(lanes, [tape, formula = std::move(formula), fusing] {
+    return whole_text(c_lane_evaluation(*tape, formula, fusing), *tape);
+  });
   return lanes;
 }
 
-std::shared_ptr<NativeFunction> NativeCompiler::step_code(const std::shared_ptr<const Tape>& tape,
-                                                          CStepFormula formula) {
+std::shared_ptr<NativeFunction> NativeCompiler::step_code(const std::shared_ptr<const Tape>& tape, CStepFormula formula,
+                                                          Fusing fusing) {
   const auto step = std::make_shared<NativeFunction>();
   if (options_.use == NativeUse::never || !is_worth_a_step(*tape, formula)) return step;
-  provide(step, [tape, formula = std::move(formula)] {
-    const std::string text = whole_text(c_step(*tape, formula), *tape);
-    return has_loops(text) ? std::string(without_fused) + text : text;
+  fusing = fused_of(fusing, *tape, formula);
+  provide(step, [tape, formula = std::move(formula), fusing] {
+    const std::string text = whole_text(c_step(*tape, formula, fusing), *tape);
+    // Of fused equations only the step has loops, and none of those has sums beside differences.
+    return has_loops(text) && fusing == Fusing::none ? std::string(without_fused) + text : text;
   });
   return step;
 }
@@ -144,7 +195,7 @@ void NativeCompiler::provide(const std::shared_ptr<NativeFunction>& function, st
   const auto job = [text = std::move(text)](const std::shared_ptr<NativeFunction>& user) {
     return Job{text, [user](void* made, std::shared_ptr<const void> code) { user->use(made, std::move(code)); }};
   };
-  if (options_.use == NativeUse::always) return make_now(job(function), {});
+  if (waits()) return make_now(job(function), {});
   function->notify_of_use(
       operations_before_cache,
       [compiler = weak_from_this(), of = std::weak_ptr(function), job](std::uint64_t operations) -> std::uint64_t {
@@ -181,8 +232,12 @@ void NativeCompiler::make_now(const Job& job, std::stop_token stop) {
   if (!load_from_cache(job, text)) compile(job, text, std::move(stop));
 }
 
-NativeCompiler::Job NativeCompiler::job_of(const std::shared_ptr<const Tape>& tape) {
-  return {.text = [tape] { return std::string(without_fused) + whole_text(function_of(*tape), *tape); },
+NativeCompiler::Job NativeCompiler::job_of(const std::shared_ptr<const Tape>& tape, Fusing fusing) {
+  return {.text =
+              [tape, fusing] {
+                const std::string text = whole_text(function_of(*tape, fusing), *tape);
+                return fusing == Fusing::none ? std::string(without_fused) + text : text;
+              },
           .use =
               [tape](void* function, std::shared_ptr<const void> code) {
                 tape->use_native(reinterpret_cast<NativeEvaluation>(function), std::move(code));
@@ -205,16 +260,16 @@ bool NativeCompiler::load_from_cache(const Job& job, const std::string& text) {
 
 void NativeCompiler::compile(const Job& job, const std::string& text, std::stop_token stop) {
   const TemporaryFolder folder;
-  if (folder.path().empty()) return note_trouble("no folder for temporary files can be made");
-  if (const Status status = check_private(folder.path()); !status) return note_trouble(status.message);
+  if (folder.path().empty()) return note_failure("no folder for temporary files can be made");
+  if (const Status status = check_private(folder.path()); !status) return note_failure(status.message);
   const fs::path source = folder.path() / "tape.c", made = folder.path() / "tape.so";
   {
     std::ofstream stream(source, std::ios::binary);
     stream << text;
-    if (!stream.flush()) return note_trouble(fmt::format("{} cannot be written", source.string()));
+    if (!stream.flush()) return note_failure(fmt::format("{} cannot be written", source.string()));
   }
   if (const Status status = compiler_->compile(source, made, std::move(stop)); !status)
-    return note_trouble(status.message);
+    return note_failure(status.message);
   cache_->keep(compiler_->identity + "\n" + text, made);
   load(job, made);
   const std::lock_guard lock(mutex_);
@@ -223,10 +278,10 @@ void NativeCompiler::compile(const Job& job, const std::string& text, std::stop_
 
 void NativeCompiler::load(const Job& job, const fs::path& shared_object) {
   void* const opened = dlopen(shared_object.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (opened == nullptr) return note_trouble(fmt::format("{}: {}", shared_object.string(), dlerror()));
+  if (opened == nullptr) return note_failure(fmt::format("{}: {}", shared_object.string(), dlerror()));
   std::shared_ptr<void> code(opened, [](void* handle) { dlclose(handle); });
   void* const function = dlsym(opened, "evaluate");
-  if (function == nullptr) return note_trouble(fmt::format("{}: no function in it", shared_object.string()));
+  if (function == nullptr) return note_failure(fmt::format("{}: no function in it", shared_object.string()));
   job.use(function, std::move(code));
 }
 

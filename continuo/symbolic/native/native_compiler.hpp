@@ -21,6 +21,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include <continuo/status/result.hpp>
@@ -35,8 +36,18 @@ namespace continuo::model {
 enum class NativeUse : std::uint8_t {
   automatic,  // as soon as it pays
   always,     // before the first evaluation
+  fused,      // the same, with fused operations: less time, and other bits than those of a tape
   never,
 };
+
+/// `auto`, `always`, `fused`, `never`; nothing for another word.
+[[nodiscard]] std::optional<NativeUse> native_use_named(std::string_view word);
+
+/// Whether this processor has operations that round a product and a sum once.
+[[nodiscard]] bool has_fused_operations();
+
+/// Why a run cannot have this use on this machine; empty where it can.
+[[nodiscard]] std::string why_not(NativeUse use);
 
 struct NativeOptions {
   NativeUse use = NativeUse::automatic;
@@ -51,8 +62,9 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   NativeCompiler(const NativeCompiler&) = delete;
   NativeCompiler& operator=(const NativeCompiler&) = delete;
 
-  /// With `always` the tape is machine code when this returns, or `report` says why not.
-  void watch(const std::shared_ptr<const Tape>& tape);
+  /// With `always` the tape is machine code when this returns, or `report` says why not. `fusing`: what `fused` may
+  /// fuse. It fuses in no tape whose C has loops: gcc 12 would fuse other operations of a loop as well.
+  void watch(const std::shared_ptr<const Tape>& tape, Fusing fusing = Fusing::none);
 
   /// The function `evaluate` of a C text, which is asked for when it is needed. Equal keys stand for equal texts, whose
   /// users share the function and count together. With `always` it is there when this returns, or `report` says why
@@ -61,17 +73,21 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   /// What Tape::evaluate does, for several runs at once in the lanes of TapeLanes, and steps of a method, if one is
   /// given: a NativeLaneEvaluation, for which nothing need be aligned. As `function`, and of this caller alone.
   [[nodiscard]] std::shared_ptr<NativeFunction> lane_code(const std::shared_ptr<const Tape>& tape,
-                                                          CStepFormula formula = {});
+                                                          CStepFormula formula = {}, Fusing fusing = Fusing::none);
   /// The same for one run with steps of this method.
-  [[nodiscard]] std::shared_ptr<NativeFunction> step_code(const std::shared_ptr<const Tape>& tape,
-                                                          CStepFormula formula);
+  [[nodiscard]] std::shared_ptr<NativeFunction> step_code(const std::shared_ptr<const Tape>& tape, CStepFormula formula,
+                                                          Fusing fusing = Fusing::none);
 
   struct Report {
     std::size_t compiled = 0;  // tapes and series, by the compiler
     std::size_t loaded = 0;    // from the cache
     std::string trouble;       // of the first that could not be compiled
+    std::size_t failed = 0;    // that could not be
   };
   [[nodiscard]] Report report() const;
+  [[nodiscard]] NativeUse use() const { return options_.use; }
+  /// Why there is not all of the machine code without which the results are others, as `fused` needs it; else empty.
+  [[nodiscard]] std::string missing() const;
 
  private:
   /// A function to be compiled, and who takes it.
@@ -79,7 +95,10 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
     std::function<std::string()> text;
     std::function<void(void* function, std::shared_ptr<const void> code)> use;
   };
-  [[nodiscard]] static Job job_of(const std::shared_ptr<const Tape>& tape);
+  [[nodiscard]] static Job job_of(const std::shared_ptr<const Tape>& tape, Fusing fusing);
+  [[nodiscard]] bool waits() const { return options_.use == NativeUse::always || options_.use == NativeUse::fused; }
+  /// What is fused of what may be.
+  [[nodiscard]] Fusing fused_of(Fusing allowed, const Tape& tape, const CStepFormula& formula) const;
   /// Has the text compiled for the function, now or when that pays.
   void provide(const std::shared_ptr<NativeFunction>& function, std::function<std::string()> text);
   /// What was done so far decides what is tried next.
@@ -89,6 +108,7 @@ class NativeCompiler : public std::enable_shared_from_this<NativeCompiler> {
   void compile(const Job& job, const std::string& text, std::stop_token stop);
   void load(const Job& job, const std::filesystem::path& shared_object);
   void note_trouble(const std::string& what);
+  void note_failure(const std::string& what);
   void work(std::stop_token stop);
 
   NativeOptions options_;

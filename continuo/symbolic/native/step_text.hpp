@@ -19,13 +19,18 @@ namespace continuo::model {
 class StepText {
  public:
   /// `runs`: how many make the step together, those of TapeLanes or one.
-  StepText(const Tape& tape, const CStepFormula& formula, std::size_t runs)
-      : tape_(tape), formula_(formula), runs_(runs), states_(tape.states_end() - tape.states_begin()) {}
+  StepText(const Tape& tape, const CStepFormula& formula, std::size_t runs, Fusing fusing)
+      : tape_(tape),
+        formula_(formula),
+        runs_(runs),
+        fusing_(fusing),
+        states_(tape.states_end() - tape.states_begin()) {}
 
   [[nodiscard]] const Tape& tape() const { return tape_; }
   [[nodiscard]] const CStepFormula& formula() const { return formula_; }
   [[nodiscard]] std::size_t runs() const { return runs_; }
   [[nodiscard]] std::size_t states() const { return states_; }
+  [[nodiscard]] Fusing fusing() const { return fusing_; }
   [[nodiscard]] bool is_single() const { return runs_ == 1; }
   [[nodiscard]] std::size_t stages() const { return formula_.b.size(); }
   /// Which of them is f at the end; where none is, one that there is not.
@@ -63,7 +68,7 @@ class StepText {
 
   /// `r`, with the registers in this array.
   void registers(std::string_view array);
-  /// `x`, `end`, `k0`, `k1`, ..., `square`.
+  /// `x`, `slope`, `end`, `k0`, `k1`, ..., `square`.
   void declare();
   /// k0.
   void start();
@@ -79,11 +84,17 @@ class StepText {
  private:
   void take_turns(std::size_t begin, std::size_t units);
   void stage(std::size_t j);
-  [[nodiscard]] static std::string sum(std::span<const double> weights, std::size_t end, std::string_view i);
+  [[nodiscard]] std::string sum(std::span<const double> weights, std::size_t end, std::string_view i) const;
+  [[nodiscard]] std::string ratios(std::string_view i) const;
+  [[nodiscard]] std::string rest_of_second(std::string_view i) const;
+  /// `sum` + a*b, as one operation where steps are fused.
+  [[nodiscard]] std::string plus_product(std::string_view sum, std::string_view a, std::string_view b) const;
 
   const Tape& tape_;
   const CStepFormula& formula_;
-  std::size_t runs_, states_;
+  std::size_t runs_;
+  Fusing fusing_;
+  std::size_t states_;
   std::string_view unit_{};
   std::vector<std::string> lines_;
 };
