@@ -33,11 +33,12 @@ Json statistics_of(const Statistics& statistics) {
   return json;
 }
 
-/// What computed the equations; the results are the same.
+/// What computed the equations; the results are the same unless operations were fused.
 Json native_of(const model::Model& model) {
   if (!model.native) return nullptr;
   const model::NativeCompiler::Report report = model.native->report();
   Json json{{"compiled", report.compiled}, {"loaded", report.loaded}};
+  if (model.native->use() == model::NativeUse::fused) json["fused"] = true;
   if (!report.trouble.empty()) json["trouble"] = report.trouble;
   return json;
 }

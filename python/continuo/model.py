@@ -56,7 +56,7 @@ class Model(Studies):
         The text itself, in place of a file. Tables are found in the present folder.
     name : str, optional
         How messages call the text.
-    native : {"auto", "always", "never"}
+    native : {"auto", "always", "fused", "never"}
         Machine code for the equations, with the same results to the bit: as soon as it pays, always, never.
 
     Raises
@@ -185,7 +185,7 @@ class Model(Studies):
 
         Parameters
         ----------
-        native : {'auto', 'always', 'never'}
+        native : {'auto', 'always', 'fused', 'never'}
             When the equations become machine code.
 
         Returns

@@ -54,7 +54,7 @@ class RightHandSide:
         A model of plain ordinary differential equations. Initial values that it does not state are zero.
     name : str
         What messages call the text.
-    native : {'auto', 'always', 'never'}
+    native : {'auto', 'always', 'fused', 'never'}
         When the equations become machine code: as soon as that pays, at once, or not at all. The results are
         the same to the bit.
 
@@ -270,7 +270,7 @@ def expression(equations: str | Sequence[str], native: str = "auto", **parameter
         states in their order, here x and x'. Or a sequence of expressions, one for each component, which read
         the components as ``y[0]``, ``y[1]``, ...: ``["y[1]", "-k*y[0]"]``. A name may be defined before:
         ``"let r = hypot(x, y); ..."``.
-    native : {'auto', 'always', 'never'}
+    native : {'auto', 'always', 'fused', 'never'}
         When the equations become machine code.
     **parameters : float
         Parameters that the equations use, and the values they begin with.

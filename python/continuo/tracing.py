@@ -71,7 +71,7 @@ def trace(
         it is.
     y0 : array_like, shape (n,), optional
         A state near which `f` is compared with its equations; the initial values of ``.model``.
-    native : {'auto', 'always', 'never'}
+    native : {'auto', 'always', 'fused', 'never'}
         When the equations become machine code.
     check : bool
         Whether `f` is compared with its equations at random points. A function whose result depends on more

@@ -41,16 +41,19 @@ py::tuple ready(model::Loaded loaded, model::NativeUse native) {
       loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = native});
     program = left_alone_in_forks(model::compile(*std::move(loaded.model)));
   }
+  if (const std::string missing = program->model.native ? program->model.native->missing() : std::string();
+      !missing.empty())
+    throw py::value_error("native: " + missing);
   return py::make_tuple(std::make_shared<LoadedModel>(LoadedModel{
                             .source = std::move(loaded.source), .program = std::move(program), .native = native}),
                         messages);
 }
 
 model::NativeUse use_named(const std::string& name) {
-  if (name == "auto") return model::NativeUse::automatic;
-  if (name == "always") return model::NativeUse::always;
-  if (name == "never") return model::NativeUse::never;
-  throw py::value_error("native is \"auto\", \"always\" or \"never\", not \"" + name + "\"");
+  const auto use = model::native_use_named(name);
+  if (!use) throw py::value_error("native is \"auto\", \"always\", \"fused\" or \"never\", not \"" + name + "\"");
+  if (const std::string why = model::why_not(*use); !why.empty()) throw py::value_error("native: " + why);
+  return *use;
 }
 
 py::tuple load_text(const std::string& name, const std::string& text, const std::string& native,

@@ -80,7 +80,10 @@ std::shared_ptr<const ModelProgram> load_equations(const std::string& text, cons
                     model.name, reason));
   }
   model.native = std::make_shared<NativeCompiler>(NativeOptions{.use = use});
-  return kept_in_forks(compile(std::move(model)));
+  std::shared_ptr<const ModelProgram> program = compile(std::move(model));
+  if (const std::string missing = program->model.native->missing(); !missing.empty())
+    throw std::invalid_argument("native: " + missing);
+  return kept_in_forks(std::move(program));
 }
 
 RightHandSide::RightHandSide(std::shared_ptr<const ModelProgram> program, const Overrides& parameters)

@@ -22,10 +22,11 @@ namespace {
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 NativeUse use_of(const std::string& native) {
-  if (native == "auto") return NativeUse::automatic;
-  if (native == "always") return NativeUse::always;
-  if (native == "never") return NativeUse::never;
-  throw std::invalid_argument(fmt::format("native is '{}'; it can be 'auto', 'always' or 'never'", native));
+  const auto use = native_use_named(native);
+  if (!use)
+    throw std::invalid_argument(fmt::format("native is '{}'; it can be 'auto', 'always', 'fused' or 'never'", native));
+  if (const std::string why = why_not(*use); !why.empty()) throw std::invalid_argument("native: " + why);
+  return *use;
 }
 
 const double* state_of(const RightHandSide& f, const Numbers& y) {

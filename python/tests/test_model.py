@@ -106,6 +106,21 @@ def test_native_is_the_same() -> None:
     np.testing.assert_array_equal(runs[0].table, runs[1].table)
 
 
+def test_fused_operations_differ_by_rounding() -> None:
+    try:
+        fused = Model(MODELS / "lorenz.sim", native="fused").run(2)
+    except ValueError as error:
+        pytest.skip(str(error))
+    run = Model(MODELS / "lorenz.sim", native="never").run(2)
+    np.testing.assert_allclose(fused.table[-1], run.table[-1], rtol=1e-9)
+    assert fused.manifest["native"]["fused"] and "fused" not in (run.manifest["native"] or {})
+
+
+def test_native_is_one_of_four_words() -> None:
+    with pytest.raises(ValueError, match="fused"):
+        Model(text=SPRING, native="sometimes")
+
+
 # ---- what a run has ----------------------------------------------------------------------------------------
 
 

@@ -20,6 +20,7 @@
 #include <continuo/simulation/program/model_derivatives.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
+#include <continuo/symbolic/tape/tape_enclosure.hpp>
 
 namespace continuo::model::native_models_test {
 namespace {
@@ -99,6 +100,52 @@ TEST(NativeGallery, EveryModelGivesTheBitsOfItsTapes) {
   EXPECT_GT(models, 30u);
   EXPECT_EQ(native->report().trouble, "");
   EXPECT_GT(native->report().compiled, 40u);
+}
+
+/// What the tape may compute, however it rounds: an enclosure has what any order of rounding gives, see
+/// numerics/enclosure.hpp.
+std::vector<Enclosure<double>> enclosed(const Tape& tape, const std::vector<double>& start, double t,
+                                        const std::vector<double>& x) {
+  std::vector<Enclosure<double>> registers(tape.register_count()), outputs(tape.output_count());
+  for (std::size_t i = 0; i < start.size(); ++i) registers[i] = Enclosure<double>(start[i]);
+  registers[Layout::time] = Enclosure<double>(t);
+  for (std::size_t i = 0; i < x.size(); ++i) registers[tape.states_begin() + i] = Enclosure<double>(x[i]);
+  tape.prepare<Enclosure<double>>(registers);
+  tape.evaluate<Enclosure<double>>(registers, outputs);
+  return outputs;
+}
+
+/// Models with many products; each takes a compilation.
+TEST(NativeGallery, FusedOperationsDifferByRounding) {
+  if (!has_fused_operations()) GTEST_SKIP() << why_not(NativeUse::fused);
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::fused, folder.path / "cache"});
+  std::mt19937 random(8);
+  std::size_t others = 0;
+  for (const char* name : {"arenstorf", "double_pendulum", "fed_batch", "lorenz", "oregonator", "pollution"}) {
+    SCOPED_TRACE(name);
+    const Loaded loaded = load((fs::path(CONTINUO_SOURCE_DIR) / "models" / fmt::format("{}.sim", name)).string());
+    ASSERT_TRUE(loaded);
+    const auto program = compile(*loaded.model);
+    const std::vector<double> start = start_values(program->model);
+    const auto first = start.begin() + program->model.layout.states;
+    const std::vector<double> begin(first, first + static_cast<std::ptrdiff_t>(program->model.states.size()));
+    const auto& tape = program->derivatives.front();
+    const auto compiled = program->tape_of(program->model.modes.front().derivatives);
+    native->watch(compiled, Fusing::equations);
+    Evaluation plain(tape, start), fused(compiled, start);
+    for (int i = 0; i < 10; ++i) {
+      const std::vector<double> x = near(begin, random), expected = plain(0.3, x), actual = fused(0.3, x);
+      const std::vector<Enclosure<double>> bounds = enclosed(*tape, start, 0.3, x);
+      for (std::size_t k = 0; k < actual.size(); ++k) {
+        ASSERT_TRUE(bounds[k].holds(expected[k])) << "output " << k;
+        EXPECT_TRUE(bounds[k].holds(actual[k])) << "output " << k << ": " << actual[k] << " for " << expected[k];
+        others += bits(actual[k]) != bits(expected[k]) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(native->report().trouble, "");
+  EXPECT_GT(others, 10u);
 }
 
 /// Compiles the C text with a main that prints numbers of it in hexadecimal, and returns what that prints.

@@ -232,6 +232,21 @@ TEST(SweepTogetherWithEvents, MachineCodeHasTheBitsOfTheRunsOneByOne) {
   EXPECT_GE(native->report().compiled, 4U);
 }
 
+/// Steps that the method computes for lanes in several modes are in machine code for a run alone: none is fused.
+TEST(SweepTogetherWithEvents, FusedRunsHaveTheBitsOfTheFusedRunsOneByOne) {
+  if (!model::has_fused_operations()) GTEST_SKIP() << model::why_not(model::NativeUse::fused);
+  const model::TestFolder folder;
+  const auto native =
+      std::make_shared<model::NativeCompiler>(model::NativeOptions{model::NativeUse::fused, folder.path / "cache"});
+  for (const unsigned seed : {6U, 7U}) {
+    const std::string text = Writer(seed).model(seed % 2 == 0 ? "method tsitouras5 tol 1e-6" : "tol 1e-6");
+    SCOPED_TRACE(text);
+    const PreparedSweep fused = prepared_sweep(text, {}, native);
+    expect_the_runs_one_by_one(fused, fused, 0);
+  }
+  EXPECT_EQ(native->report().trouble, "");
+}
+
 /// The pair of methods ends steps at events, learns from them, and goes over to its stiff method in some runs.
 TEST(SweepTogetherWithEvents, RunsThatBecomeStiffEndAsTheyDoAlone) {
   for (const char* tolerance : {"tol 1e-4", "tol 1e-8"}) {

@@ -221,6 +221,36 @@ TEST(SweepTogether, ManyStepsByMachineCodeHaveTheBitsOfTheRunsOneByOne) {
   EXPECT_EQ(native->report().trouble, "");
 }
 
+/// Fused operations: other bits than those of the tape, and the same together and alone.
+TEST(SweepTogether, FusedRunsHaveTheBitsOfTheFusedRunsOneByOne) {
+  if (!model::has_fused_operations()) GTEST_SKIP() << model::why_not(model::NativeUse::fused);
+  const model::TestFolder folder;
+  const auto native =
+      std::make_shared<model::NativeCompiler>(model::NativeOptions{model::NativeUse::fused, folder.path / "cache"});
+  std::vector<std::string> texts;
+  const std::vector<std::string> ways = {"method dop853 tol 1e-8", "tol 1e-7", "method rk4 step 0.01"};
+  for (unsigned seed = 0; seed < ways.size(); ++seed) {
+    std::mt19937 random(seed + 60);
+    texts.push_back(random_model(random, ways[seed], seed == 0 ? readings_at_end : readings));
+  }
+  // More states than are written out one by one, without a family.
+  std::string ring = "param k = 1\n";
+  for (int i = 1; i <= 10; ++i)
+    ring += fmt::format("x{0}' = k*x{1} - {2}*x{0}*x{3}\nx{0}(0) = {0}/10\n", i, i % 10 + 1, 0.1 * i, (i + 3) % 10 + 1);
+  texts.push_back(ring + "run 0..2 method tsitouras5 tol 1e-8\nsweep { k from 0.1 to 1 count 20\n  keep x3 at end }\n");
+  std::size_t others = 0;
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(text);
+    const PreparedSweep fused = prepared_sweep(text, {}, native), sweep = prepared_sweep(text);
+    expect_the_runs_one_by_one(fused, all_runs(fused));
+    const SweepOutcome plain = sweep.run(0), other = fused.run(0);
+    others += model::bits(plain.kept[0]) != model::bits(other.kept[0]) ? 1 : 0;
+    EXPECT_NE(fused.identity(), sweep.identity());
+  }
+  EXPECT_GT(others, texts.size() / 2);
+  EXPECT_EQ(native->report().trouble, "");
+}
+
 /// x' = a*x^2 from 1 ends at 1/a, the root of a negative number is none, and steps can be too many.
 TEST(SweepTogether, RunsThatFailDisturbNoOther) {
   const PreparedSweep sweep = prepared_sweep(

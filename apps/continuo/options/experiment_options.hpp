@@ -28,7 +28,7 @@ struct ExperimentOptions {
   std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
   std::optional<double> step, until, output, max_step;
   std::optional<std::size_t> max_steps;
-  std::string native = "auto";  // "auto", "always", "never"
+  std::string native = "auto";  // "auto", "always", "fused", "never"
   SweepWords sweep;
 
   /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
@@ -38,6 +38,9 @@ struct ExperimentOptions {
            absolute_tolerances.empty() && !step && !until && !max_step && !max_steps;
   }
 };
+
+/// Whether fused operations were asked for, and some of the machine code could not be made, which has been said then.
+[[nodiscard]] bool lacks_fused_code(const model::Model& model);
 
 /// The model's file and --set.
 void add_model(CLI::App& verb, ExperimentOptions& options);

@@ -331,7 +331,7 @@ class Study {
                       sweep_.runs()));
       return interrupted;
     }
-    if (!written(status) || !draw()) return usage;
+    if (!written(status) || !draw() || lacks_fused_code(sweep_.model())) return usage;
     return report_.failed() > 0 ? numerical_failure : done;
   }
 

@@ -172,6 +172,7 @@ ExitCode run(RunRequest request, const RunParts& parts) {
     return run_and_show(prepared, {.boundary = *boundary, .log = log_of(request, prepared, file), .on_row = on_row},
                         *curves);
   }();
+  if (lacks_fused_code(prepared.program->model)) return usage;
   const bool is_recorded = file.finish(simulated);
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
                              !request.sweep_run && request.experiment.as_written() && request.boundary.as_written(),

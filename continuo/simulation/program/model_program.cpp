@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include <continuo/simulation/program/fused_equations.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
 
@@ -111,7 +112,8 @@ void compile_equations(ModelProgram& program) {
   Model& model = program.model;
   for (const When& event : model.events) program.enclosed.push_back(enclosed_guard(model, event));
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
-    program.derivatives.push_back(program.busy_tape_of(model.modes[mode].derivatives));
+    program.derivatives.push_back(program.tape_of(model.modes[mode].derivatives));
+    if (model.native) model.native->watch(program.derivatives.back(), fusing_of(program));
     ProgramGuards guards;
     std::vector<NodeId> nodes, truths;
     for (std::size_t i = 0; i < model.events.size(); ++i) {
@@ -215,7 +217,8 @@ std::shared_ptr<const Tape> ModelProgram::busy_tape_of(std::span<const NodeId> n
 
 std::shared_ptr<NativeFunction> ModelProgram::step_code(std::size_t mode, StepFormula formula) const {
   if (!model.native) return nullptr;
-  return step_codes.of({mode, formula}, [&] { return model.native->step_code(derivatives[mode], formula()); });
+  return step_codes.of({mode, formula},
+                       [&] { return model.native->step_code(derivatives[mode], formula(), fusing_of(*this)); });
 }
 
 namespace {

@@ -1,4 +1,5 @@
 // Asks the compiler of the model for code in lanes.
+#include <continuo/simulation/program/fused_equations.hpp>
 #include <continuo/simulation/together/integrate_together.hpp>
 #include <continuo/simulation/together/lane_code.hpp>
 #include <continuo/symbolic/native/native_compiler.hpp>
@@ -10,7 +11,7 @@ std::shared_ptr<NativeFunction> LaneCode::rates(const std::string& method, std::
   if (!compiler) return nullptr;
   const std::scoped_lock lock(mutex_);
   std::shared_ptr<NativeFunction>& code = rates_[{method, mode}];
-  if (!code) code = compiler->lane_code(program_->derivatives[mode], step_formula(method));
+  if (!code) code = compiler->lane_code(program_->derivatives[mode], step_formula(method), fusing_of(*program_));
   return code;
 }
 

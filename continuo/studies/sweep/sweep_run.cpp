@@ -12,6 +12,7 @@
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/runs/watched_run.hpp>
 #include <continuo/simulation/drive/run_checks.hpp>
+#include <continuo/simulation/native.hpp>
 #include <continuo/simulation/recorded_run.hpp>
 #include <continuo/studies/sweep/sweep_run.hpp>
 
@@ -258,6 +259,7 @@ std::string PreparedSweep::identity() const {
   std::string text = model().text.content;
   text += '\n' + std::to_string(model::checksum_of_tables(*readable_.program)) + '\n' + text_of(experiment_);
   text += fmt::format("{} {} {}\n", plan_->runs, to_string(plan_->sampling), plan_->seed);
+  if (model().native && model().native->use() == model::NativeUse::fused) text += "fused operations\n";
   for (const SweepAxis& axis : plan_->axes) {
     text += axis.column() + ':';
     if (const auto* points = std::get_if<SweepPoints>(&axis.values)) {
