@@ -63,11 +63,10 @@ class DirectSolver {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const RigidBody<Real, Dim>& body = all[bodies[i]];
       free_[i] = velocity_of(body);
-      mass_[i] = mass_matrix(body);
+      const Matrix<double, size_of_spin> inertia = inertia_of(body);
+      mass_[i] = mass_matrix(body, inertia);
       inverse_mass_[i] = static_cast<double>(body.inverse_mass);
-      for (std::size_t j = 0; j < std::size_t(size_of_spin); ++j)
-        for (std::size_t k = 0; k < std::size_t(size_of_spin); ++k)
-          inverse_inertia_[i][j][k] = static_cast<double>(body.inverse_inertia_now[j][k]);
+      inverse_inertia_[i] = inverse(inertia);
       greatest_mass_ = std::max(greatest_mass_, mass_[i][0]);
       greatest_inertia_ = std::max(greatest_inertia_, mass_[i].back());
       stiffen(body, i, pass);
@@ -204,14 +203,26 @@ class DirectSolver {
     for (std::size_t k = 0; k < std::size_t(size_of_spin); ++k) v[Dim + k] = static_cast<double>(body.spin[k]);
     return v;
   }
+  /// As it was at the beginning of the step. Not the inverse of its inverse in the precision of the body: of the least
+  /// moment of a needle that would have no digit in single precision.
   template <class Real>
-  [[nodiscard]] static Block<size> mass_matrix(const RigidBody<Real, Dim>& body) {
+  [[nodiscard]] static Matrix<double, size_of_spin> inertia_of(const RigidBody<Real, Dim>& body) {
+    Orientation<double, Dim> orientation;
+    for (std::size_t k = 0; k < orientation.components.size(); ++k)
+      orientation[k] = static_cast<double>(body.orientation_before[k]);
+    Matrix<double, size_of_spin> own;
+    for (std::size_t j = 0; j < std::size_t(size_of_spin); ++j)
+      for (std::size_t i = 0; i < std::size_t(size_of_spin); ++i) own[j][i] = static_cast<double>(body.inertia[j][i]);
+    return turned_inertia(rotation(orientation), own);
+  }
+  template <class Real>
+  [[nodiscard]] static Block<size> mass_matrix(const RigidBody<Real, Dim>& body,
+                                               const Matrix<double, size_of_spin>& inertia) {
     Block<size> m{};
     for (std::size_t k = 0; k < Dim; ++k) m[k * size + k] = 1 / static_cast<double>(body.inverse_mass);
-    const auto inertia = inverse(body.inverse_inertia_now);
     for (std::size_t j = 0; j < std::size_t(size_of_spin); ++j)
       for (std::size_t i = 0; i < std::size_t(size_of_spin); ++i)
-        m[(Dim + j) * size + Dim + i] = static_cast<double>((inertia[j][i] + inertia[i][j]) / 2);
+        m[(Dim + j) * size + Dim + i] = (inertia[j][i] + inertia[i][j]) / 2;
     return m;
   }
   [[nodiscard]] static double product(const Velocity& a, const Velocity& b) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <continuo/bodies/fast_motion.hpp>
-#include <continuo/bodies/rigid_stepping/rigid_stepper.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_steps.hpp>
 #include <continuo/bodies/time_stepping/fast_stepper.hpp>
 
 namespace continuo {
@@ -42,7 +42,7 @@ struct FastMotion<Real, Dim>::Steppers {
   World<Real, Dim>& world;
   FastOptions<Real> options;
   std::optional<Stepper> balls;
-  std::optional<RigidStepper<Real, Dim>> any;
+  std::optional<RigidSteps<Real, Dim>> any;
 };
 
 template <class Real, int Dim>

@@ -1,5 +1,6 @@
 // A rigid body as the solver of contacts and joints sees it.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -50,9 +51,15 @@ template <class Real>
   return {{{{{1 / a[0][0]}}}}};
 }
 template <class Real>
-[[nodiscard]] Matrix<Real, 3> inverse(const Matrix<Real, 3>& a) {
+[[nodiscard]] Matrix<Real, 3> inverse(const Matrix<Real, 3>& whole) {
+  // The determinant of the moment of inertia of a small part, or that of the inverse, is not among the numbers of
+  // single precision. A power of two changes no digit.
+  int exponent = 0;
+  static_cast<void>(std::frexp(std::max({whole[0][0], whole[1][1], whole[2][2]}), &exponent));
+  const Real unit = std::ldexp(Real(1), -exponent);
+  const Matrix<Real, 3> a = whole * unit;
   const Vector<Real, 3> x = moment(a[1], a[2]), y = moment(a[2], a[0]), z = moment(a[0], a[1]);
-  return transposed(Matrix<Real, 3>{{{x, y, z}}}) * (1 / dot(a[0], x));
+  return transposed(Matrix<Real, 3>{{{x, y, z}}}) * (unit / dot(a[0], x));
 }
 
 /// Whether a moment of inertia is the same about all axes, up to rounding: such a body turns at a constant spin.

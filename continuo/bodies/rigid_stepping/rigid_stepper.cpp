@@ -1,9 +1,9 @@
 // Instantiates the steps of rigid bodies for double precision.
-#include <continuo/bodies/rigid_stepping/rigid_stepper.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_steps_members.hpp>
 
 namespace continuo {
 
-template class RigidStepper<double, 2>;
-template class RigidStepper<double, 3>;
+template class RigidSteps<double, 2>;
+template class RigidSteps<double, 3>;
 
 }  // namespace continuo

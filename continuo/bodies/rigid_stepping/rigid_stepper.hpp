@@ -707,7 +707,7 @@ class RigidStepper {
   }
 
   static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 4;
-  static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 60;
+  static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 100;
 
   World<Real, Dim>& world_;
   FastOptions<Real> options_;
@@ -742,10 +742,5 @@ class RigidStepper {
   RigidSleep<Real, Dim> sleep_;
   bool is_stale_ = true;
 };
-
-extern template class RigidStepper<float, 2>;
-extern template class RigidStepper<float, 3>;
-extern template class RigidStepper<double, 2>;
-extern template class RigidStepper<double, 3>;
 
 }  // namespace continuo

@@ -1,9 +1,9 @@
 // Instantiates the steps of rigid bodies for single precision.
-#include <continuo/bodies/rigid_stepping/rigid_stepper.hpp>
+#include <continuo/bodies/rigid_stepping/rigid_steps_members.hpp>
 
 namespace continuo {
 
-template class RigidStepper<float, 2>;
-template class RigidStepper<float, 3>;
+template class RigidSteps<float, 2>;
+template class RigidSteps<float, 3>;
 
 }  // namespace continuo

@@ -27,8 +27,12 @@ struct MovingPair {
     const auto &core_a = a.shape->core, &core_b = b.shape->core;
     const Real roundings = a.shape->rounding + b.shape->rounding;
     const auto closest = closest_points(core_a, core_b, b_in_a);
-    if (closest.distance > Real(1e-5) * std::min(a.shape->reach, b.shape->reach))
-      return {at_a.axes * closest.normal, closest.distance - roundings};
+    if (closest.distance > Real(1e-5) * std::min(a.shape->reach, b.shape->reach)) {
+      // Between points that nearly touch the normal has few digits: along it, long shapes may overlap deeply.
+      const V normal = at_a.axes * closest.normal;
+      const Real separation = -overlap(normal, time);
+      if (separation + roundings > closest.distance / 2) return {normal, separation};
+    }
     const auto axis = least_overlap(core_a, core_b, b_in_a, Real(0));
     return {at_a.axes * axis.normal, axis.separation - roundings};
   }
