@@ -16,7 +16,7 @@ constexpr std::size_t most_nodes = 200, most_states = 24;
 
 /// Every function of what is not bounded is the whole line, for it may be undefined there. `widened` allows for the
 /// rounding of an operation, 18 units in the last place; the state besides for that of a sum of 25 terms.
-constexpr std::string_view helpers = R"(struct range {
+constexpr std::string_view range_helpers = R"(struct range {
   double lo, hi;
 };
 INLINE int is_bounded(struct range a) { return a.hi - a.lo < __builtin_inf(); }
@@ -91,7 +91,7 @@ class GuardWriter {
   GuardSource source(std::span<const NodeId> guards) {
     const std::vector<NodeId> nodes = reachable(graph_, guards);
     if (nodes.size() > most_nodes) return {};
-    if (!guards.empty()) text_ += helpers, others();
+    if (!guards.empty()) text_ += range_helpers, others();
     line("INLINE int may_have_root(const double *c, const double *x, double t, double h, double theta,");
     line("    const double *numbers) {{");
     line("const double part = __builtin_fabs(theta), q = part * part;");

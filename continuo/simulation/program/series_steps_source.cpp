@@ -13,7 +13,7 @@ constexpr std::size_t width = 4, most_pieces_written_out = 2;
 
 /// coarse_log2 and coarse_exp2 are those of methods/taylor_series/coarse_power.hpp. Of the numbers of a register that
 /// belong to no component, nothing is added.
-constexpr std::string_view helpers = R"(struct series_steps {
+constexpr std::string_view step_helpers = R"(struct series_steps {
   double *rows, *scratch, *x, *rest, *now, *next;
   double t, scale, size, carried, limit, longest, until, forward;
   const double *rtol, *atol;
@@ -138,7 +138,7 @@ class StepsWriter {
   std::string text(std::string_view guards) {
     const std::size_t pieces = (components_ + width - 1) / width;
     line("enum {{ N = {}, P = {}, PADDED = {} }};", components_, order_, pieces * width);
-    text_ += helpers;
+    text_ += step_helpers;
     sums_of_piece();
     advance();
     each_tolerance();
