@@ -16,7 +16,7 @@
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/catalogue.hpp>
 
-namespace continuo::model {
+namespace continuo::model::recording_test {
 namespace {
 
 using Random = std::mt19937;
@@ -345,4 +345,4 @@ TEST(Recording, RefusesACheckpointOfAnotherIntegration) {
 }
 
 }  // namespace
-}  // namespace continuo::model
+}  // namespace continuo::model::recording_test
