@@ -151,6 +151,21 @@ class Writer {
   unsigned states_, modes_;
 };
 
+/// Random models of these seeds, each by one of the ways, have the bits of their runs one by one, and more events
+/// together than this.
+void expect_random_models_one_by_one(const std::vector<std::string>& ways, unsigned from, unsigned to, double least) {
+  double events = 0;
+  for (unsigned seed = from; seed < to; ++seed) {
+    const std::string text = Writer(seed).model(ways[seed % ways.size()]);
+    SCOPED_TRACE(text);
+    const PreparedSweep sweep = prepared_sweep(text);
+    EXPECT_TRUE(sweep.goes_together());
+    events += expect_the_runs_one_by_one(sweep, sweep, 0);
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(events, least);
+}
+
 TEST(SweepTogetherWithEvents, RandomModelsHaveTheBitsOfTheirRunsOneByOne) {
   const std::vector<std::string> ways = {"method dop853 tol 1e-8",
                                          "method tsitouras5 tol 1e-6",
@@ -162,32 +177,14 @@ TEST(SweepTogetherWithEvents, RandomModelsHaveTheBitsOfTheirRunsOneByOne) {
                                          "method rk4 step 0.01",
                                          "tol 1e-9",
                                          "method tsitouras5 step 0.03"};
-  double events = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    const std::string text = Writer(seed).model(ways[seed % ways.size()]);
-    SCOPED_TRACE(text);
-    const PreparedSweep sweep = prepared_sweep(text);
-    EXPECT_TRUE(sweep.goes_together());
-    events += expect_the_runs_one_by_one(sweep, sweep, 0);
-    if (HasFailure()) return;
-  }
-  EXPECT_GT(events, 1000);
+  expect_random_models_one_by_one(ways, 0, 40, 1000);
 }
 
 /// The steps of the stiff method end at events: each is taken again, alone, with the matrix that the lane has.
 TEST(SweepTogetherWithEvents, RandomModelsHaveTheSameBitsByTheStiffMethod) {
   const std::vector<std::string> ways = {"method rodas5p tol 1e-4", "method rodas5p tol 1e-7",
                                          "method rodas5p step 0.03"};
-  double events = 0;
-  for (unsigned seed = 100; seed < 112; ++seed) {
-    const std::string text = Writer(seed).model(ways[seed % ways.size()]);
-    SCOPED_TRACE(text);
-    const PreparedSweep sweep = prepared_sweep(text);
-    EXPECT_TRUE(sweep.goes_together());
-    events += expect_the_runs_one_by_one(sweep, sweep, 0);
-    if (HasFailure()) return;
-  }
-  EXPECT_GT(events, 250);
+  expect_random_models_one_by_one(ways, 100, 112, 250);
 }
 
 /// From slow to very stiff, with modes of which one is stiff, a slope that is infinite at an event, df/dt, and steps
