@@ -91,7 +91,7 @@ INLINE double mean(lanes sum) { return ((sum[0] + sum[1]) + (sum[2] + sum[3])) *
 )";
 
 /// The choice of the size, see TaylorSeries::next_factor; then what StepControl does.
-constexpr std::string_view steps =
+constexpr std::string_view text_of_steps =
     R"(INLINE double next_factor(const struct series_steps *s, double before, double last) {
   before *= s->terms[0] * s->terms[0];
   last *= s->terms[1] * s->terms[1];
@@ -146,7 +146,7 @@ class StepsWriter {
     measure();
     text_ += guards;
     line("#define GUARDS {}", guards.empty() ? "0" : "s->numbers && may_have_root(now, x, t, h, theta, s->numbers)");
-    text_ += steps;
+    text_ += text_of_steps;
     return std::move(text_);
   }
 
