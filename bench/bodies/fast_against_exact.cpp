@@ -2,24 +2,13 @@
 // momentum and mean position, and what both cost.
 //   fast_against_exact
 #include <cmath>
-#include <cstdio>
-#include <functional>
 #include <random>
-#include <string>
 #include <vector>
 
-#include <bench/processor_time.hpp>
-
-#include <continuo/bodies/exact_motion.hpp>
-#include <continuo/bodies/fast_motion.hpp>
-#include <continuo/status/require.hpp>
+#include <bench/bodies/fast_against_exact.hpp>
 
 namespace continuo::bench {
 namespace {
-
-double processor_milliseconds() {
-  return 1e3 * processor_seconds();
-}
 
 template <int Dim>
 Vector<double, Dim> up(double height) {
@@ -162,65 +151,13 @@ World<double, 3> heavy_and_light() {
   return world;
 }
 
-/// Sizes that differences are parts of: mechanical energy above the floor z = 0 and the sum of |m v|, both at most.
-template <int Dim>
-struct Sizes {
-  double energy = 0, momentum = 0;
-  void see(const World<double, Dim>& world) {
-    double sum = 0;
-    for (std::size_t i = 0; i < world.size(); ++i)
-      if (!world.is_fixed(i)) sum += world.mass[i] * length(world.velocity[i]);
-    energy = std::max(energy, std::abs(kinetic_energy(world)) + std::abs(potential_energy(world)));
-    momentum = std::max(momentum, sum);
-  }
-};
-
-template <int Dim>
-Vector<double, Dim> mean_position(const World<double, Dim>& world) {
-  Vector<double, Dim> sum;
-  double moving = 0;
-  for (std::size_t i = 0; i < world.size(); ++i)
-    if (!world.is_fixed(i)) sum += world.position[i], ++moving;
-  return sum * (1 / moving);
-}
-
-template <int Dim>
-void compare(const char* name, const World<double, Dim>& start, double duration) {
-  World<double, Dim> exact = start, fast = start;
-  Sizes<Dim> sizes;
-  sizes.see(start);
-  double begin = processor_milliseconds();
-  ExactMotion<double, Dim> exact_motion(exact, {.most_events = 2'000'000});
-  const Status status = exact_motion.advance_to(duration);
-  const double exact_time = processor_milliseconds() - begin;
-  if (!status) {
-    std::printf("| %s | the exact motion: %s |\n", name, status.message.c_str());
-    return;
-  }
-  begin = processor_milliseconds();
-  double seen = 0;  // what looking costs
-  FastMotion<double, Dim> motion(fast);
-  for (int i = 0; i < std::lround(duration * 60); ++i) {
-    if (const Status step = motion.advance(); !step) std::printf("%s: %s\n", name, step.message.c_str());
-    const double before = processor_milliseconds();
-    sizes.see(fast);
-    seen += processor_milliseconds() - before;
-  }
-  const double fast_time = processor_milliseconds() - begin - seen;
-  const auto energy = [](const auto& world) { return kinetic_energy(world) + potential_energy(world); };
-  std::printf("| %s | %.1e | %.1e | %.1e | %.2f ms | %.2f ms |\n", name, (energy(fast) - energy(exact)) / sizes.energy,
-              length(momentum(fast) - momentum(exact)) / sizes.momentum,
-              length(mean_position(fast) - mean_position(exact)), exact_time, fast_time);
-  std::fflush(stdout);
-}
-
 }  // namespace
 }  // namespace continuo::bench
 
 int main() {
   using namespace continuo::bench;
   using Material = continuo::Material<double>;
-  std::puts("| Scene | Energy | Momentum | Mean position | Time, exact | Time, fast |\n|---|---|---|---|---|---|");
+  print_head_of_comparison();
   compare("throw, 2 s", one<3>(100, {}, 3), 2);
   compare("ball, e = 1, from 10 m, 20 s", one<3>(10.5, Material{.restitution = 1}), 20);
   compare("ball, e = 0.8, 10 s", one<3>(10.5, Material{.restitution = 0.8}), 10);
