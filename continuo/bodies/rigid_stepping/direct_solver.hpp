@@ -128,17 +128,15 @@ class DirectSolver {
   }
   /// Lets the next pass begin with the impulses from before the pushing pass.
   void begin_as_before_push() { starts_ = before_push_; }
-  /// Finds the impulses, and the velocities that they give. False where it does not; then impulses and velocities are
-  /// those with which it began.
+  /// Finds the impulses, and the velocities that they give. False where it does not: then there is nothing to store.
   [[nodiscard]] bool solve(RowPass pass) {
     pass_ = pass;
     const std::vector<double> before = impulses();
     if (pass == RowPass::push) before_push_ = before;
     if (starts_.size() != before.size()) starts_ = before;
     const bool is_found = newton();
-    if (!is_found) restore(starts_);
     starts_.clear();
-    v_ = velocities_of_impulses();
+    if (is_found) v_ = velocities_of_impulses();
     return is_found;
   }
 

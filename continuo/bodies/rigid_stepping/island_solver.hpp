@@ -57,9 +57,7 @@ class IslandSolver {
       sweeps_ = sweeps_instead;
     }
     if (sweeps_ > 1) soften(all);
-    for (const std::uint32_t k : blocks_)
-      for (const auto& row : all.of(all.blocks[k]))
-        if (row.impulse != Real(0)) row.apply(row.impulse, bodies[all.blocks[k].a], bodies[all.blocks[k].b]);
+    begin_with_impulses(all, bodies);
     sweep_all(RowPass::push, all, bodies);
   }
   /// Removes the velocity that correcting positions gave.
@@ -91,11 +89,37 @@ class IslandSolver {
 
  private:
   [[nodiscard]] bool solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
-    const bool is_solved = direct_.solve(pass);
-    if (!is_solved && pass == RowPass::push) return false;
+    if (!direct_.solve(pass)) return false;
     direct_.template store_bodies<Real>(members_, bodies);
     direct_.template store_impulses<Real>(blocks_, all);
-    return is_solved;
+    return true;
+  }
+  /// Sweeps begin with the impulses of the last substep, those of contacts only if they take energy: those that stopped
+  /// a hard hit may be thousands of times what the velocities mean now, and 20 sweeps would not undo them.
+  void begin_with_impulses(Constraints<Real, Dim>& all, Bodies bodies) const {
+    const auto apply = [&](bool to_contacts, const Real& factor) {
+      for (const std::uint32_t k : blocks_)
+        for (const auto& row : all.of(all.blocks[k]))
+          if (row.impulse != Real(0) && (all.blocks[k].points > 0) == to_contacts)
+            row.apply(row.impulse * factor, bodies[all.blocks[k].a], bodies[all.blocks[k].b]);
+    };
+    apply(false, Real(1));
+    Real power = power_of_contacts(all, bodies);
+    apply(true, Real(1));
+    power += power_of_contacts(all, bodies);
+    if (!(power > Real(0))) return;
+    apply(true, Real(-1));
+    for (const std::uint32_t k : blocks_)
+      if (all.blocks[k].points > 0)
+        for (auto& row : all.of(all.blocks[k])) row.impulse = Real(0);
+  }
+  /// Impulses times velocities: the sum before and after the impulses act is twice the energy that they give.
+  [[nodiscard]] Real power_of_contacts(Constraints<Real, Dim>& all, Bodies bodies) const {
+    Real power(0);
+    for (const std::uint32_t k : blocks_)
+      if (const RowBlock& block = all.blocks[k]; block.points > 0)
+        for (const auto& row : all.of(block)) power += row.impulse * row.velocity(bodies[block.a], bodies[block.b]);
+    return power;
   }
   /// Sweeps do not get along with joints that undo all of an error at once, nor with rigid contacts that push fast:
   /// where bodies overlap, those may contradict each other.

@@ -14,6 +14,7 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/rigid_stepping/continuous_collision.hpp>
+#include <continuo/bodies/rigid_stepping/energy_bounds.hpp>
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
 #include <continuo/bodies/rigid_stepping/joint_rows.hpp>
 #include <continuo/bodies/rigid_stepping/manifold_solver.hpp>
@@ -86,8 +87,8 @@ class RigidStepper {
     const Real h = substep();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
     if (!swept_.empty()) manifolds_.store_impulses(contacts_.all(), swept_);
-    rebound();
     take_states();
+    rebound();
     if (!all_finite()) {
       is_stale_ = true;
       return {.ending = Ending::not_finite,
@@ -358,12 +359,15 @@ class RigidStepper {
   }
 
   void move_substep(const Real& now, const Real& h) {
+    note_spin_energies();
     accelerate(now, h);
     for (const std::uint32_t i : joined_) take_state(i);
     if (has_joint_rows()) gather_joints();
     aim_contacts();
+    note_free_velocities();
     for_each_island([this](std::size_t k) {
       if (!is_swept_[k]) solvers_[k].push(rows_, bodies_);
+      limit_energy(k, RowPass::push);
     });
     for (std::size_t i = 0; i < world_.size(); ++i)
       if (swept_.empty() || !is_in_lanes_[i]) move(i, h);
@@ -374,11 +378,66 @@ class RigidStepper {
     aim_contacts();
     for_each_island([this](std::size_t k) {
       if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
+      limit_energy(k, RowPass::relax);
     });
     for (int k = 0; !swept_.empty() && k < relaxing_sweeps_; ++k) relax_swept();
     note_greatest_impulses();
     keep_contacts();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
+  }
+  /// Whether the kinetic energy of an island may only fall by what its contacts do.
+  [[nodiscard]] bool only_loses(std::size_t island) const {
+    return std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
+      const auto is_driven = [this](std::uint32_t i) {
+        return bodies_[i].is_fixed() && (bodies_[i].v != V{} || bodies_[i].spin != S{});
+      };
+      return k < active_.size() && !is_driven(rows_.blocks[k].a) && !is_driven(rows_.blocks[k].b);
+    });
+  }
+  /// The energy with which bodies turn, before a substep: free turning does not change it.
+  void note_spin_energies() {
+    spin_energy_.resize(world_.size()), free_.resize(world_.size());
+    for_each_in_scalar_islands([this](std::uint32_t i) { spin_energy_[i] = spin_energy(bodies_[i]); });
+  }
+  void note_free_velocities() {
+    for_each_in_scalar_islands([this](std::uint32_t i) {
+      free_[i] = {bodies_[i].v, bodies_[i].spin};
+      if (!world_.torque_laws.empty()) spin_energy_[i] = std::max(spin_energy_[i], spin_energy(bodies_[i]));
+    });
+  }
+  template <class Act>
+  void for_each_in_scalar_islands(Act&& act) {
+    for_each_island([&](std::size_t k) {
+      if (is_swept_[k]) return;
+      for (const std::uint32_t i : islands_.bodies(k)) act(i);
+    });
+  }
+  /// Contacts give no energy beyond that with which they undo overlaps.
+  void limit_energy(std::size_t k, RowPass pass) {
+    if (is_swept_[k] || !only_loses(k)) return;
+    EnergyOfChange<Real> energy;
+    Real before(0), of_fast(0);
+    const Real fast = Real(0.5) / options_.step, push = pass == RowPass::push ? 2 * options_.fastest_push : Real(0);
+    const auto is_fast = [&](const RigidBody<Real, Dim>& body) { return squared(body.spin) > fast * fast; };
+    for (const std::uint32_t i : islands_.bodies(k)) {
+      energy.add(bodies_[i], free_[i]);
+      before += 2 * spin_energy_[i] + (squared(free_[i].v) + push * push) / bodies_[i].inverse_mass;
+    }
+    constexpr Real rounding = 1 + 64 * std::numeric_limits<Real>::epsilon();
+    if (!(energy.at(Real(1)) > before * rounding)) return;
+    const Real part = energy.part_within(before);
+    for (const std::uint32_t i : islands_.bodies(k)) {
+      take_part(bodies_[i], free_[i], part);
+      if (is_fast(bodies_[i])) of_fast += 2 * spin_energy(bodies_[i]);
+    }
+    for (const std::uint32_t block : islands_.blocks(k))
+      for (auto& row : rows_.of(rows_.blocks[block])) row.impulse *= part;
+    // What is left is due to how far the fast ones turned.
+    const Real excess = energy.at(part) - before;
+    if (!(excess > Real(0)) || !(of_fast > Real(0))) return;
+    const Real factor = std::sqrt(std::max(1 - excess / of_fast, Real(0)));
+    for (const std::uint32_t i : islands_.bodies(k))
+      if (is_fast(bodies_[i])) bodies_[i].spin *= factor;
   }
   void move(std::size_t i, const Real& h) {
     RigidBody<Real, Dim>& body = bodies_[i];
@@ -553,11 +612,42 @@ class RigidStepper {
           if (does_rebound(contact, point, threshold)) rebounds[island] = true;
       }
     if (std::ranges::find(rebounds, true) == rebounds.end()) return;
+    before_impacts_.resize(world_.size());
+    for (std::size_t i = 0; i < world_.size(); ++i) before_impacts_[i] = {bodies_[i].v, bodies_[i].spin};
     rebound_swept(rebounds, threshold);
     for_each_island([&](std::size_t island) {
       if (!rebounds[island] || is_swept_[island]) return;
       for (const std::uint32_t k : islands_.blocks(island)) prepare_rebound(k, threshold);
       solvers_[island].rebound(rows_, bodies_);
+    });
+    take_states();
+    for_each_island([&](std::size_t island) {
+      if (rebounds[island] && only_loses(island)) limit_impacts(island);
+    });
+  }
+  /// An island leaves its impacts with no more energy than it had when the step began and its forces gave it on its
+  /// way, and with just that where nothing takes any: its motion up to now is that of the impacts, whatever overlaps
+  /// were undone.
+  void limit_impacts(std::size_t island) {
+    EnergyOfChange<Real> energy;
+    Real came(0);
+    for (const std::uint32_t i : islands_.bodies(island)) {
+      const RigidBody<Real, Dim>& body = bodies_[i];
+      energy.add(body, before_impacts_[i]);
+      RigidBody<Real, Dim> then = body;
+      then.axes = rotation(body.orientation_before);
+      const BodyVelocity<Real, Dim> first{world_.velocity[i], world_.spin[i]};
+      came += kinetic_product(then, first, first) + 2 * dot(acceleration_[i], body.moved) / body.inverse_mass;
+    }
+    const Real part =
+        is_elastic(island) ? energy.part_to(came) : energy.part_within(std::max(energy.at(Real(0)), came));
+    if (part == Real(1)) return;
+    for (const std::uint32_t i : islands_.bodies(island)) take_part(bodies_[i], before_impacts_[i], part);
+  }
+  [[nodiscard]] bool is_elastic(std::size_t island) const {
+    return std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
+      const auto& contact = contacts_.all()[active_[k]].contact;
+      return contact.restitution == Real(1) && contact.friction == Real(0);
     });
   }
   void rebound_swept(const std::vector<bool>& rebounds, const Real& threshold) {
@@ -738,6 +828,8 @@ class RigidStepper {
   std::vector<ContactHardness<Real>> hardness_;  // of each block
   std::vector<bool> is_alone_;                   // bodies without contacts and joints
   std::vector<V> acceleration_;
+  std::vector<Real> spin_energy_;                               // of the bodies before a substep
+  std::vector<BodyVelocity<Real, Dim>> free_, before_impacts_;  // after its forces have acted; at the end of the last
   TouchLog<Real, Dim> touches_;
   RigidSleep<Real, Dim> sleep_;
   bool is_stale_ = true;
