@@ -11,6 +11,7 @@
 #include <continuo/bodies/meshes/mesh_rays.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
+#include <continuo/shapes/direction_of.hpp>
 #include <continuo/shapes/ray_entry.hpp>
 
 namespace continuo {
@@ -45,12 +46,8 @@ Status prepare(Ray<Real, Dim>& ray) {
     return invalid_input("origin and direction of a ray must be finite");
   if (!(ray.reach >= Real(0)))
     return invalid_input("the reach of a ray must be 0 or more; infinity for a ray without end");
-  Real largest(0);
-  for (std::size_t axis = 0; axis < ray.direction.size(); ++axis)
-    largest = std::max(largest, std::abs(ray.direction[axis]));
-  if (!(largest > Real(0))) return invalid_input("the direction of a ray must not be 0");
-  for (std::size_t axis = 0; axis < ray.direction.size(); ++axis) ray.direction[axis] /= largest;
-  ray.direction *= 1 / length(ray.direction);
+  if (ray.direction == Vector<Real, Dim>{}) return invalid_input("the direction of a ray must not be 0");
+  ray.direction = direction_of(ray.direction);
   return {};
 }
 

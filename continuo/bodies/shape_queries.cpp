@@ -10,6 +10,7 @@
 #include <continuo/bodies/meshes/mesh_manifolds.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/shapes/cast.hpp>
+#include <continuo/shapes/direction_of.hpp>
 #include <continuo/shapes/plane_manifold.hpp>
 
 namespace continuo {
@@ -29,8 +30,9 @@ class Queries<Real, Dim>::ShapeSearch {
     if (!is_finite(placed.position) || !is_finite(orientation))
       return invalid_input("position and orientation of the shape must be finite");
     if constexpr (Dim == 3) {
-      if (!(length(orientation) > Real(0))) return invalid_input("the orientation must be a quaternion that is not 0");
-      orientation *= 1 / length(orientation);
+      if (orientation == Orientation<Real, Dim>{})
+        return invalid_input("the orientation must be a quaternion that is not 0");
+      orientation = direction_of(orientation);
     }
     ShapeSearch search(index, filter);
     search.solid_ = std::move(*made);
@@ -231,7 +233,7 @@ template <class Real, int Dim>
 Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_contact(const PlacedShape<Real, Dim>& shape,
                                                                          const V& way,
                                                                          const QueryFilter& filter) const {
-  if (!is_finite(way)) return invalid_input("the way of the shape must be finite");
+  if (!std::isfinite(length(way))) return invalid_input("the way of the shape, and its square, must be finite");
   auto search = ShapeSearch::of(*this, shape, filter);
   if (!search) return search.status();
   return search->first_contact(way);

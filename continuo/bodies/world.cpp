@@ -10,6 +10,7 @@
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/methods/support/compensated_sum.hpp>
+#include <continuo/shapes/direction_of.hpp>
 
 namespace continuo {
 
@@ -40,7 +41,7 @@ Status check(const BodyDefinition<Real, Dim>& definition) {
   if (!is_finite(definition.position)) return invalid_input("the position must be finite");
   if (!is_finite(definition.velocity)) return invalid_input("the velocity must be finite");
   if (!is_finite(definition.spin)) return invalid_input("the spin must be finite");
-  if (!is_finite(definition.orientation) || (Dim == 3 && !is_positive(length(definition.orientation))))
+  if (!is_finite(definition.orientation) || (Dim == 3 && definition.orientation == Orientation<Real, Dim>{}))
     return invalid_input("the orientation must be finite, and in space a quaternion that is not 0");
   if (definition.mass ? !is_positive(*definition.mass) : !is_positive(definition.density))
     return invalid_input("mass and density must be greater than 0, and finite; `fixed` is for bodies that never move");
@@ -130,7 +131,7 @@ Result<BodyHandle> World<Real, Dim>::add(const BodyDefinition<Real, Dim>& defini
   velocity.push_back(is_still ? V{} : definition.velocity);
   constant_force.emplace_back();
   O turned_by = definition.orientation;
-  if constexpr (Dim == 3) turned_by *= 1 / length(turned_by);
+  if constexpr (Dim == 3) turned_by = direction_of(turned_by);
   orientation.push_back(turned_by);
   position.push_back(of_shape ? V(definition.position + rotation(turned_by) * of_shape->centre) : definition.position);
   spin.push_back(is_still ? S{} : definition.spin);
@@ -229,11 +230,11 @@ World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) c
 
 template <class Real, int Dim>
 Status World<Real, Dim>::add_wall(Wall<Real, Dim> wall) {
-  const Real size_of_normal = length(wall.normal);
-  if (!is_positive(size_of_normal)) return invalid_input("the normal of a wall must be finite and not 0");
+  if (!is_finite(wall.normal) || wall.normal == V{})
+    return invalid_input("the normal of a wall must be finite and not 0");
   if (!(wall.offset - wall.offset == Real(0))) return invalid_input("the offset of a wall must be finite");
   if (Status fault = check(wall.material); !fault) return fault;
-  wall.normal *= 1 / size_of_normal;
+  wall.normal = direction_of(wall.normal);
   walls_.push_back(wall);
   return {};
 }

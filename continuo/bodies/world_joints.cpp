@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <continuo/bodies/world.hpp>
+#include <continuo/shapes/direction_of.hpp>
 
 namespace continuo {
 namespace {
@@ -18,7 +19,7 @@ template <class Real, int Dim>
 Status check_joint(const JointDefinition<Real, Dim>& of) {
   if (!is_finite(of.anchor) || (of.anchor_b && !is_finite(*of.anchor_b)))
     return invalid_input("the anchors of a joint must be finite");
-  if (!is_finite(of.axis) || !(length(of.axis) > Real(0)))
+  if (!is_finite(of.axis) || of.axis == Vector<Real, Dim>{})
     return invalid_input("the axis of a joint must be finite, and not 0");
   if (!is_finite(of.axle)) return invalid_input("the axle of a joint must be finite");
   if (of.limits && !(of.limits->lower <= of.limits->upper))
@@ -37,6 +38,8 @@ Status check_joint(const JointDefinition<Real, Dim>& of) {
     return invalid_input(
         "limits, springs and motors need a joint with a coordinate: a hinge, slider, distance or wheel");
   if (of.kind == JointKind::distance && of.motor) return invalid_input("a distance has no motor; a slider has");
+  if (of.kind == JointKind::pull && of.a != BodyHandle{})
+    return invalid_input("a pull draws b to a place, and has no a: a spring of the world pulls two bodies together");
   if (of.kind == JointKind::universal && Dim == 2) return invalid_input("universal joints exist in space only");
   return {};
 }
@@ -44,14 +47,14 @@ Status check_joint(const JointDefinition<Real, Dim>& of) {
 /// The axis, the axle made perpendicular to it, and what is across both.
 template <class Real>
 Matrix<Real, 2> axes_of(const JointDefinition<Real, 2>& of) {
-  const Vector<Real, 2> axis = of.axis * (1 / length(of.axis));
+  const Vector<Real, 2> axis = direction_of(of.axis);
   return {{{axis, {{-axis[1], axis[0]}}}}};
 }
 template <class Real>
 Matrix<Real, 3> axes_of(const JointDefinition<Real, 3>& of) {
-  const Vector<Real, 3> axis = of.axis * (1 / length(of.axis));
-  Vector<Real, 3> axle = of.axle - axis * dot(of.axle, axis);
-  if (!(length(axle) > Real(1e-3) * length(of.axle))) {
+  const Vector<Real, 3> axis = direction_of(of.axis), wished = direction_of(of.axle);
+  Vector<Real, 3> axle = wished - axis * dot(wished, axis);
+  if (!(length(axle) > Real(1e-3))) {
     std::size_t least = 0;
     for (std::size_t i = 1; i < 3; ++i)
       if (std::abs(axis[i]) < std::abs(axis[least])) least = i;
@@ -74,7 +77,7 @@ Result<JointHandle> World<Real, Dim>::add_joint(const JointDefinition<Real, Dim>
   if (of.a == of.b) return invalid_input("a joint cannot connect a body with itself");
   if (is_fixed(index(of.b)) && (is_to_world || is_fixed(index(of.a))))
     return invalid_input("a joint needs at least one body that can move");
-  if (Dim == 3 && (of.kind == JointKind::universal || of.kind == JointKind::wheel) && !(length(of.axle) > Real(0)))
+  if (Dim == 3 && (of.kind == JointKind::universal || of.kind == JointKind::wheel) && of.axle == V{})
     return invalid_input("this joint needs an axle, across the axis");
   const auto pose = [&](BodyHandle handle) {
     Pose<Real, Dim> at;
@@ -91,6 +94,8 @@ Result<JointHandle> World<Real, Dim>::add_joint(const JointDefinition<Real, Dim>
   joint.length = continuo::length(V(end_b - of.anchor));
   if (Dim == 2 && of.kind == JointKind::gear)
     joint.length = orientation[index(of.b)][0] + (is_to_world ? Real(0) : of.ratio * orientation[index(of.a)][0]);
+  if (!is_finite(joint.anchor_a) || !is_finite(joint.anchor_b) || !is_finite(joint.start) || !is_number(joint.length))
+    return invalid_input("the anchors of a joint are too far from its bodies for the numbers");
   if (of.kind == JointKind::distance && !(joint.length > Real(0)))
     return invalid_input("a distance needs two different ends: give anchor_b");
   joint.limits = of.limits, joint.spring = of.spring, joint.motor = of.motor;

@@ -111,6 +111,7 @@ void transfer(Archive& archive, Joint<Real, Dim>& joint) {
     for (const auto* const axes : {&joint.axes_a, &joint.axes_b})
       for (const auto& axis : axes->columns) is_right = is_right && std::abs(length(axis) - 1) < Real(1e-3);
     archive.expect(is_right && std::isfinite(joint.length) && std::isfinite(joint.ratio), "a joint that is not finite");
+    archive.expect(joint.kind != JointKind::pull || joint.a == BodyHandle{}, "a pull with two bodies");
   }
 }
 
