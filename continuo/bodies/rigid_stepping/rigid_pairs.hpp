@@ -67,6 +67,8 @@ class RigidPairs {
     first_mesh_ = static_cast<std::uint32_t>(parts_.size() + world.walls().size());
     is_new_ = true;
   }
+  /// The next update looks for all pairs.
+  void find_all() { is_new_ = true; }
   /// Whether the meshes of the world are still these.
   [[nodiscard]] bool has_meshes_of(const World<Real, Dim>& world) const {
     return std::ranges::equal(meshes_, world.meshes(), {}, {}, &WorldMesh<Real, Dim>::geometry);

@@ -3,11 +3,13 @@
 // are solved directly.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,10 +64,15 @@ class RigidStepper {
   /// @{
   void save(ByteWriter& writer) const { const_cast<RigidStepper*>(this)->transfer(writer); }
   void load(ByteReader& reader) {
-    is_stale_ = true;
+    auto before = std::tuple(contacts_, joints_, touches_, sleep_);
     transfer(reader);
     reader.expect(sleep_.fits(world_.size()), "the sleep of other bodies");
     reader.expect_end();
+    if (!reader.ok()) return void(std::tie(contacts_, joints_, touches_, sleep_) = std::move(before));
+    begin();
+    // Bodies are where the last step has left them: otherwise those that sleep would pass for moved, and wake.
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      bodies_[i].x = world_.position[i], bodies_[i].orientation = world_.orientation[i];
   }
   /// @}
 
@@ -121,17 +128,20 @@ class RigidStepper {
                                   : static_cast<std::uint32_t>(world_.index(handle));
   }
 
+  [[nodiscard]] static std::size_t bodies_of(const World<Real, Dim>& world) {
+    return world.size() + world.walls().size() + 1;
+  }
+  void begin() {
+    bodies_.assign(bodies_of(world_), {});
+    pairs_.begin(world_);
+    is_stale_ = false;
+  }
   /// Takes the bodies of the world; after them, one that never moves for each wall, and one for the world itself. What
   /// sleeps is fixed for this step.
   void load() {
-    const std::size_t n = world_.size(), walls = world_.walls().size();
     if (!is_stale_ && !pairs_.has_meshes_of(world_)) sleep_ = {};
     if (!is_stale_ && !pairs_.is_of(world_)) contacts_.find_anew();
-    if (is_stale_ || bodies_.size() != n + walls + 1 || !pairs_.is_of(world_)) {
-      bodies_.assign(n + walls + 1, {});
-      pairs_.begin(world_);
-      is_stale_ = false;
-    }
+    if (is_stale_ || bodies_.size() != bodies_of(world_) || !pairs_.is_of(world_)) begin();
     sleep_.wake_changed(world_, bodies_);
     load_bodies();
     joint_handles_ = world_.joints();
@@ -146,6 +156,18 @@ class RigidStepper {
       apart_.emplace_back(std::min(a, b), std::max(a, b));
     }
     std::ranges::sort(apart_);
+    take_rules();
+  }
+  /// Bodies that may collide from now on, as where a joint has been removed or a mask has changed, are no pair yet, and
+  /// others should be none any more.
+  void take_rules() {
+    Rules now{.apart = apart_};
+    for (std::size_t i = 0; i < world_.size(); ++i) now.are_fixed.push_back(world_.is_fixed(i));
+    for (std::size_t i = 0; world_.has_traits() && i < world_.size(); ++i)
+      now.masks.push_back({world_.traits(i).category, world_.traits(i).mask});
+    if (now == rules_) return;
+    pairs_.find_all();
+    rules_ = std::move(now);
   }
   void load_bodies() {
     team_.for_each(0, world_.size(), 64, [this](std::size_t from, std::size_t to) {
@@ -157,7 +179,7 @@ class RigidStepper {
     body.was_moved = body.x != world_.position[i] || body.orientation != world_.orientation[i];
     body.x = body.x_before = world_.position[i], body.v = world_.velocity[i];
     body.orientation = body.orientation_before = world_.orientation[i], body.spin = world_.spin[i];
-    body.moved = {}, body.stiffening = {};
+    body.moved = {}, body.stiffening = {}, body.lag = {};
     const bool is_still = world_.is_fixed(i) || sleep_.is_asleep(i);
     if (world_.is_fixed(i) && !world_.traits(i).is_driven) body.v = {}, body.spin = {};
     body.inverse_mass = is_still ? Real(0) : world_.inverse_mass[i];
@@ -724,10 +746,8 @@ class RigidStepper {
       joint.force = joints_[k].linear * (1 / h), joint.torque = joints_[k].angular * (1 / h);
       joint.motor_effort = joints_[k].impulses[static_cast<std::size_t>(JointRow::motor)] / h;
       if (joint.kind == JointKind::pull) continue;
-      if (length(joint.force) > joint.breaks_at || length(joint.torque) > joint.breaks_at_torque) {
+      if (length(joint.force) > joint.breaks_at || length(joint.torque) > joint.breaks_at_torque)
         joint.is_broken = true;
-        pairs_.begin(world_);  // the two may collide now
-      }
     }
   }
   [[nodiscard]] bool is_sensor(const PartContact<Real, Dim>& found) const {
@@ -774,6 +794,13 @@ class RigidStepper {
     for (std::size_t i = 0; i < world_.size(); ++i) bodies_[i].x = world_.position[i];
   }
 
+  /// Which bodies collide, beside their groups.
+  struct Rules {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> apart{};  // by joints
+    std::vector<bool> are_fixed{};
+    std::vector<std::array<std::uint64_t, 2>> masks{};
+    friend bool operator==(const Rules&, const Rules&) = default;
+  };
   struct KeptJoint {
     JointHandle handle{};
     JointImpulses<Real> impulses{};  // of the last substep
@@ -783,7 +810,7 @@ class RigidStepper {
   };
   template <class Archive>
   void transfer(Archive& archive) {
-    contacts_.transfer(archive, world_.size() + world_.walls().size() + 1);
+    contacts_.transfer(archive, bodies_of(world_));
     auto joints = static_cast<std::uint64_t>(joints_.size());
     archive(joints);
     if constexpr (Archive::reads) {
@@ -823,6 +850,7 @@ class RigidStepper {
   std::vector<std::uint32_t> acting_joints_;  // the joint of each block after those of contacts
   std::vector<JointRow> joint_rows_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
+  Rules rules_;                                                 // of the pairs
   RigidIslands islands_;
   std::vector<IslandSolver<Real, Dim>> solvers_;
   std::vector<ContactHardness<Real>> hardness_;  // of each block
