@@ -69,7 +69,11 @@ class StoppingTimes {
         bodies_(bodies),
         stops_(world.size(), {step}),
         is_fast_(pairs.parts().size()) {
-    for (std::size_t i = 0; i < is_fast_.size(); ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
+    for (std::uint32_t i = 0; i < is_fast_.size(); ++i) {
+      is_fast_[i] = moves_far(pairs.parts()[i]);
+      if (is_fast_[i]) fast_.push_back(i), swept_.push_back(swept_by(pairs.parts()[i]));
+    }
+    if (!fast_.empty()) tree_of_fast_.build(swept_);
   }
 
   [[nodiscard]] const std::vector<Stop<Real>>& stops() const { return stops_; }
@@ -81,17 +85,14 @@ class StoppingTimes {
   void find_first_contact(const RigidPart<Real, Dim>& part) {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     const MovingBody<Real, Dim> moving = motion_of(part, body, step_);
-    const Bounds<Real, Dim> swept =
-        grown(united(bounds_of(*part.convex, moving.at(Real(0))), bounds_of(*part.convex, part.pose(body))),
-              std::min(way(part), part.convex->reach));
-    pairs_.tree().for_each_overlap(swept, [&](std::uint32_t j) {
+    for (const std::uint32_t j : parts_near(swept_by(part))) {
       const RigidPart<Real, Dim>& other = pairs_.parts()[j];
-      if (other.body == part.body || !world_.collide(part.body, other.body)) return;
-      if (world_.traits(other.body).is_sensor || !may_pass(part, other) || has_contact(part, other)) return;
+      if (other.body == part.body || !world_.collide(part.body, other.body)) continue;
+      if (world_.traits(other.body).is_sensor || !may_pass(part, other) || has_contact(part, other)) continue;
       const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
                                          part.inner_radius / 100);
       if (contact && contact->time > Real(0)) stop(part.body, contact->time, other.body);
-    });
+    }
     for (const WorldMesh<Real, Dim>& mesh : world_.meshes())
       if (mesh.collides(world_.traits(part.body)))
         stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, stops_[part.body].time, step_));
@@ -111,6 +112,34 @@ class StoppingTimes {
   }
 
  private:
+  /// What a part passes in the step, with room for its turn.
+  [[nodiscard]] Bounds<Real, Dim> swept_by(const RigidPart<Real, Dim>& part) const {
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    return grown(united(pairs_.bounds_at(part, before(body)), pairs_.bounds_at(part, body)),
+                 std::min(way(part), part.convex->reach));
+  }
+  /// The parts that one may meet which sweeps these bounds, in the order of their numbers: fast ones on their ways, and
+  /// others where the step began, with the margin of contacts. The rooms of the pairs are larger by what has been
+  /// before, and their tree has an order of its own: a run that goes on from a snapshot has others.
+  [[nodiscard]] std::vector<std::uint32_t> parts_near(const Bounds<Real, Dim>& swept) const {
+    std::vector<std::uint32_t> near;
+    tree_of_fast_.for_each_overlap(swept, [&](std::uint32_t k) { near.push_back(fast_[k]); });
+    pairs_.tree().for_each_overlap(swept, [&](std::uint32_t j) {
+      if (is_fast_[j]) return;
+      const RigidPart<Real, Dim>& part = pairs_.parts()[j];
+      if (overlap(swept, pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_))) near.push_back(j);
+    });
+    std::ranges::sort(near);
+    return near;
+  }
+  /// The body at the beginning of the step.
+  [[nodiscard]] RigidBody<Real, Dim> before(const RigidBody<Real, Dim>& body) const {
+    RigidBody<Real, Dim> then = body;
+    then.x = body.x_before, then.orientation = body.orientation_before, then.axes = rotation(then.orientation);
+    if (const auto i = static_cast<std::size_t>(&body - bodies_.data()); !body.is_fixed())
+      then.v = world_.velocity[i], then.spin = world_.spin[i];
+    return then;
+  }
   [[nodiscard]] Real time_in_wall(const PartContact<Real, Dim>& found, const RigidPart<Real, Dim>& part) const {
     const auto& first = found.contact.points[0];
     const Convex<Real, Dim> point = {.core = {.corners = {{}}}};
@@ -160,7 +189,10 @@ class StoppingTimes {
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
   std::vector<Stop<Real>> stops_;
-  std::vector<bool> is_fast_;  // of each part
+  std::vector<bool> is_fast_;             // of each part
+  std::vector<std::uint32_t> fast_;       // the parts that are
+  std::vector<Bounds<Real, Dim>> swept_;  // by these
+  BoundsTree<Real, Dim> tree_of_fast_;
 };
 
 /// Puts a body back to where it was at a time of the step.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <continuo/bodies/contact_solver/contact_step.hpp>
@@ -84,8 +85,9 @@ template <class Real, int Dim>
 
 /// Takes a contact along with two bodies that have hardly moved against each other since its points were found: the
 /// normal is fixed to a, each point to both bodies, so that the separation is right up to the square of the rotation.
-/// `size` is that of the smaller body. Returns false, and changes nothing, where they have moved, or where points
-/// farther apart count now: then points are to be found anew, which costs ten times as much.
+/// `size` is that of the smaller body. Returns false where they have moved, where points farther apart count now, or
+/// where none is near enough to count any more: then points are to be found anew, which costs ten times as much. So
+/// what has a contact is always near, and a pair, also in a run that goes on from a snapshot.
 template <class Real, int Dim>
 [[nodiscard]] bool follow(RigidContact<Real, Dim>& contact, const Real& margin, const Real& size,
                           const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
@@ -96,13 +98,15 @@ template <class Real, int Dim>
   for (std::size_t axis = 0; axis < Dim; ++axis)
     if (!(squared(now.axes[axis] - contact.found_at.axes[axis]) <= most * most)) return false;
   contact.normal = a.axes * contact.normal_in_a;
+  Real nearest = std::numeric_limits<Real>::infinity();
   for (auto& point : contact.all()) {
     point.arm_a = a.axes * point.local_a, point.arm_b = b.axes * point.local_b;
     point.separation = point.separation_when_found + dot(contact.normal, (b.x + point.arm_b) - (a.x + point.arm_a));
     point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
     point.greatest_impulse = Real(0);
+    nearest = std::min(nearest, point.separation);
   }
-  return true;
+  return nearest <= margin;
 }
 
 /// How far apart the surfaces are now at a point of a contact.

@@ -152,12 +152,9 @@ class RigidPairs {
     const RigidPart<Real, Dim>& part = parts_[i];
     const RigidBody<Real, Dim>& body = bodies[part.body];
     if (body.is_fixed() && !is_new_ && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved) return false;
-    const Real margin = contact_margin(part, body, step);
-    const Pose<Real, Dim> pose = part.pose(body);
-    const Bounds<Real, Dim> bounds =
-        grown(part.is_box() ? bounds_of_box(part.half, pose) : bounds_of(*part.convex, pose), margin);
+    const Bounds<Real, Dim> bounds = bounds_of_contacts(part, body, step);
     if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) return false;
-    rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * margin);
+    rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * contact_margin(part, body, step));
     return true;
   }
   [[nodiscard]] static Bounds<Real, Dim> bounds_of_box(const V& half, const Pose<Real, Dim>& pose) {
@@ -173,7 +170,8 @@ class RigidPairs {
     for (std::uint32_t k = 0; k < walls.size(); ++k) {
       Real reach(0), side = dot(walls[k].normal, centre) - walls[k].offset;
       for (std::size_t axis = 0; axis < Dim; ++axis) reach += std::abs(walls[k].normal[axis]) * half[axis];
-      if (walls[k].thin) side = std::abs(side);
+      // The side of a thin wall is that of the centre of the body, from which a part of a compound may be beyond it.
+      if (walls[k].thin) side = std::abs(side) - length(parts_[i].in_body.centre);
       if (side <= reach) pairs_.push_back({i, static_cast<std::uint32_t>(parts_.size()) + k});
     }
     for (std::uint32_t k = 0; k < meshes_.size(); ++k)
@@ -182,6 +180,15 @@ class RigidPairs {
   }
 
  public:
+  [[nodiscard]] static Bounds<Real, Dim> bounds_at(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body) {
+    const Pose<Real, Dim> pose = part.pose(body);
+    return part.is_box() ? bounds_of_box(part.half, pose) : bounds_of(*part.convex, pose);
+  }
+  /// Bounds of where a part has contacts in a step that begins so. They are within its room.
+  [[nodiscard]] static Bounds<Real, Dim> bounds_of_contacts(const RigidPart<Real, Dim>& part,
+                                                            const RigidBody<Real, Dim>& body, const Real& step) {
+    return grown(bounds_at(part, body), contact_margin(part, body, step));
+  }
   /// Surfaces that are nearer than the sum of these of both parts have a contact.
   [[nodiscard]] static Real contact_margin(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
                                            const Real& step) {
