@@ -410,9 +410,6 @@ class RigidStepper {
   /// Whether the kinetic energy of an island may only fall by what its contacts do.
   [[nodiscard]] bool only_loses(std::size_t island) const {
     return std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
-      const auto is_driven = [this](std::uint32_t i) {
-        return bodies_[i].is_fixed() && (bodies_[i].v != V{} || bodies_[i].spin != S{});
-      };
       return k < active_.size() && !is_driven(rows_.blocks[k].a) && !is_driven(rows_.blocks[k].b);
     });
   }
@@ -434,9 +431,39 @@ class RigidStepper {
       for (const std::uint32_t i : islands_.bodies(k)) act(i);
     });
   }
-  /// Contacts give no energy beyond that with which they undo overlaps.
+  [[nodiscard]] bool is_driven(std::uint32_t i) const {
+    return bodies_[i].is_fixed() && (bodies_[i].v != V{} || bodies_[i].spin != S{});
+  }
+  [[nodiscard]] bool has_joints(std::size_t island) const {
+    return std::ranges::any_of(islands_.blocks(island), [this](std::uint32_t k) { return k >= active_.size(); });
+  }
+  /// The energy that rows may have given to the bodies of an island: motors, springs and driven bodies do work.
+  [[nodiscard]] Real given_energy(std::size_t island) const {
+    Real given(0);
+    for (const std::uint32_t k : islands_.blocks(island)) {
+      const RowBlock& block = rows_.blocks[k];
+      const bool is_by_driven = is_driven(block.a) || is_driven(block.b);
+      if (block.points > 0 && !is_by_driven) continue;
+      for (const auto& row : std::span(rows_.rows).subspan(block.first, block.rows)) {
+        const bool is_rigid = row.softness == Real(0) && row.bias_at_end == Real(0) && row.most == -row.least &&
+                              row.most == std::numeric_limits<Real>::infinity();
+        if (is_rigid && !is_by_driven) continue;
+        Real way(0);
+        if (!bodies_[block.b].is_fixed())
+          way += dot(row.direction, bodies_[block.b].v + free_[block.b].v) +
+                 dot(row.lever_b, bodies_[block.b].spin + free_[block.b].spin);
+        if (!bodies_[block.a].is_fixed())
+          way -= dot(row.direction, bodies_[block.a].v + free_[block.a].v) +
+                 dot(row.lever_a, bodies_[block.a].spin + free_[block.a].spin);
+        given += std::max(row.impulse * way / 2, Real(0));
+      }
+    }
+    return given;
+  }
+  /// Constraints give no energy beyond that with which they undo overlaps and that of motors, springs and driven
+  /// bodies. Where joints turn with their bodies in a substep, what they hold changes the energy a little, to and fro.
   void limit_energy(std::size_t k, RowPass pass) {
-    if (is_swept_[k] || !only_loses(k)) return;
+    if (is_swept_[k]) return;
     EnergyOfChange<Real> energy;
     Real before(0), of_fast(0);
     const Real fast = Real(0.5) / options_.step, push = pass == RowPass::push ? 2 * options_.fastest_push : Real(0);
@@ -445,8 +472,10 @@ class RigidStepper {
       energy.add(bodies_[i], free_[i]);
       before += 2 * spin_energy_[i] + (squared(free_[i].v) + push * push) / bodies_[i].inverse_mass;
     }
-    constexpr Real rounding = 1 + 64 * std::numeric_limits<Real>::epsilon();
-    if (!(energy.at(Real(1)) > before * rounding)) return;
+    const Real gain = has_joints(k) ? gain_of_turning_joints : 1 + 64 * std::numeric_limits<Real>::epsilon();
+    if (!(energy.at(Real(1)) > before * gain)) return;
+    before += 2 * given_energy(k);
+    if (!(energy.at(Real(1)) > before * gain)) return;
     const Real part = energy.part_within(before);
     for (const std::uint32_t i : islands_.bodies(k)) {
       take_part(bodies_[i], free_[i], part);
@@ -823,6 +852,7 @@ class RigidStepper {
     archive(touches_), archive(sleep_);
   }
 
+  static constexpr Real gain_of_turning_joints = Real(1.05);  // in a substep that turns them by a fifth of a radian
   static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 4;
   static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 100;
 
