@@ -6,7 +6,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
 
