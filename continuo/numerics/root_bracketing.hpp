@@ -20,16 +20,22 @@ struct Bracket {
 /// Illinois false position with a bisection whenever three steps have not halved the enclosure, so the count of
 /// evaluations is bounded by about three times the bits of Real; a smooth f takes eight to twelve.
 /// M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11 (1971); the safeguard is T. J. Dekker's (1969).
+///
+/// Numbers near zero are denser than values of f, which is then zero over a stretch of them. Secants from such a zero
+/// lead to its neighbour, one number at a time: so the end of the stretch is searched in strides that double.
 template <class Real, class F>
 [[nodiscard]] Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Real value_far) {
   using std::abs, std::max, std::min, std::nextafter;
   int slow = 0, last_side = 0;
-  Real width = far - near;
+  Real width = far - near, stride = 0;
   while (true) {
     const Real middle = near + (far - near) / 2;
     if (middle == near || middle == far) return {near, far};
     Real t = middle;
-    if (slow < 3 && value_far != value_near) {
+    if (value_near == 0) {
+      stride = stride == 0 ? nextafter(near, far) - near : 2 * stride;
+      if (abs(stride) < abs(middle - near)) t = near + stride;
+    } else if (slow < 3 && value_far != value_near) {
       t = far - value_far * ((far - near) / (value_far - value_near));
       // A guess that falls on an end is moved to that end's neighbour: this is what closes the enclosure in one go.
       const Real least = min(near, far), greatest = max(near, far);

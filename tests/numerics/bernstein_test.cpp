@@ -103,5 +103,32 @@ TEST(RootBracketing, ZeroBelongsToTheNearSideAndTimeMayRunBackwards) {
   EXPECT_EQ(root.far, std::nextafter(0.5, 0.0));
 }
 
+// With the rounding of a large number, f is zero over a stretch of many small ones. The strides to its end double, and
+// what lies between the last two is halved: twice the logarithm of the count of numbers, after a few secants.
+TEST(RootBracketing, TheEndOfAStretchOfZerosTakesTwiceTheLogarithmOfItsNumbers) {
+  for (const double large : {27.0, 1e3, 1e6, 1e9}) {
+    for (const double place : {0.3, 0.012, 1e-4}) {
+      int evaluations = 0;
+      const auto f = [&](double s) {
+        ++evaluations;
+        return (large + (std::exp(s) - std::exp(place))) - large;
+      };
+      const auto root = enclose_root(f, 0.0, 1.0, f(0), f(1));
+      EXPECT_EQ(root.far, std::nextafter(root.near, 1.0));
+      EXPECT_LE(f(root.near), 0);
+      EXPECT_GT(f(root.far), 0);
+      EXPECT_NEAR(root.far, place, std::numeric_limits<double>::epsilon() * large);
+      const double numbers = std::numeric_limits<double>::epsilon() * large / (std::nextafter(place, 1) - place);
+      EXPECT_LT(evaluations, 2 * std::log2(numbers) + 20) << "to " << large << " at " << place;
+    }
+  }
+}
+
+TEST(RootBracketing, AZeroAtTheBeginningIsLeft) {
+  const auto root = enclose_root([](double x) { return x * (x - 0.7); }, 0.0, 1.0, 0.0, 0.3);
+  EXPECT_EQ(root.far, std::nextafter(root.near, 1.0));
+  EXPECT_NEAR(root.far, 0.7, std::numeric_limits<double>::epsilon());
+}
+
 }  // namespace
 }  // namespace continuo::bernstein_test
