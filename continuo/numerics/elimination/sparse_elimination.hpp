@@ -8,13 +8,16 @@
 //     elimination.scale_by(values);
 //   if (elimination.factor(values)) elimination.solve(b);
 //
-// The matrix, its rows and columns in the order of the pivots, is block upper triangular: L D U with unit diagonals in
-// each block, as in small_lu.hpp, and the entries above the blocks as they are.
+// The matrix, its rows and columns in the order of the pivots, is block upper triangular: D L U with unit diagonals in
+// each block, and above the blocks the entries divided by the pivot of their row. So a solution divides the right side
+// by the pivots, and all that is left are products of one kind, which are listed for the whole matrix: those that do
+// not wait for each other come together, so that the processor has several at once at work.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -70,33 +73,20 @@ class SparseElimination {
       good = good && size_of_pivot > 0 && std::isfinite(size_of_pivot);
       const Number inverse = pivot = reciprocal(pivot);
       for (std::size_t p = below; p < right; ++p) {
-        const Number factor = value_[p] = value_[p] * inverse;
+        const Number factor = value_[p] * inverse;
         good = good && magnitude(factor) <= greatest_multiplier;
         for (std::size_t q = right; q < end; ++q) value_[*target++] -= factor * value_[q];
       }
       for (std::size_t q = right; q < end; ++q) value_[q] = value_[q] * inverse;
     }
+    divide_by_pivots();
     return good;
   }
 
   /// b becomes the solution. `factor` must have succeeded.
   void solve(Number* b) {
-    for (std::size_t k = 0; k < row_.size(); ++k) y_[k] = scaled(b[row_[k]], scale_[k]);
-    for (std::size_t block = blocks_.size() - 1; block-- > 0;) {
-      const auto begin = static_cast<std::size_t>(blocks_[block]), end = static_cast<std::size_t>(blocks_[block + 1]);
-      for (std::size_t k = begin; k < end; ++k) {
-        const Number known = y_[k];
-        for (std::size_t p = below_[k]; p < right_[k]; ++p) y_[unknown_[p]] -= value_[p] * known;
-        y_[k] = known * value_[first_[k]];
-      }
-      for (std::size_t k = end; k-- > begin;) {
-        Number sum = y_[k];
-        for (std::size_t p = right_[k]; p < first_[k + 1]; ++p) sum -= value_[p] * y_[unknown_[p]];
-        y_[k] = sum;
-      }
-      for (std::size_t k = begin; k < end; ++k)
-        for (std::size_t p = above_[k]; p < above_[k + 1]; ++p) y_[unknown_[p]] -= value_[p] * y_[k];
-    }
+    for (std::size_t k = 0; k < row_.size(); ++k) y_[k] = start_[k] * b[row_[k]];
+    for (const Product& one : products_) y_[one.target] -= value_[one.value] * y_[one.source];
     for (std::size_t k = 0; k < row_.size(); ++k) b[column_[k]] = y_[k];
   }
 
@@ -119,6 +109,23 @@ class SparseElimination {
     std::vector<std::uint32_t> value;
     Block(std::size_t first_, std::size_t size_) : first(first_), size(size_), is_there(size_ * size_, 0) {}
   };
+
+  /// y[target] -= value * y[source].
+  struct Product {
+    std::uint32_t target, source, value;
+  };
+
+  /// The entries below the pivots and above the blocks are those of L and of what lies beside it in the same rows.
+  void divide_by_pivots() {
+    const auto divide = [&](std::size_t from, std::size_t to) {
+      for (std::size_t p = from; p < to; ++p) value_[p] = value_[p] * value_[first_[unknown_[p]]];
+    };
+    for (std::size_t k = 0; k < row_.size(); ++k) {
+      start_[k] = scaled(value_[first_[k]], scale_[k]);
+      divide(below_[k], right_[k]);
+      divide(above_[k], above_[k + 1]);
+    }
+  }
 
   [[nodiscard]] bool list(std::span<const std::int32_t> starts, std::span<const std::int32_t> rows) {
     const std::size_t size = row_.size();
@@ -146,14 +153,15 @@ class SparseElimination {
     }
     first_.push_back(unknown_.size());
     list_above(starts, rows, turn_of_row, turn_of_column, block_of, blocks);
+    list_products();
     value_.resize(unknown_.size());
-    y_.resize(size);
+    start_.resize(size), y_.resize(size);
     return true;
   }
 
   void clear() {
     first_.clear(), below_.clear(), right_.clear(), above_.clear();
-    unknown_.clear(), target_.clear(), place_.clear(), entry_row_.clear();
+    unknown_.clear(), target_.clear(), place_.clear(), entry_row_.clear(), products_.clear();
   }
 
   /// Fills the block as elimination does, and lists its values and products. False where these are too many.
@@ -214,6 +222,35 @@ class SparseElimination {
     above_.push_back(unknown_.size());
   }
 
+  /// The products of a solution, in the order in which they could be done if as many as one likes were done at once: a
+  /// product waits for all that change its source and for those that change its target before it. One with U or above
+  /// the blocks also comes after all products with L that read its target.
+  void list_products() {
+    std::vector<std::size_t> changed(row_.size(), 0), read(row_.size(), 0), turns;
+    std::vector<Product> in_order;
+    const auto add = [&](std::size_t target, std::size_t source, std::size_t value, bool is_lower) {
+      const std::size_t turn = std::max({changed[target], changed[source], is_lower ? 0 : read[target]});
+      in_order.push_back(
+          {static_cast<std::uint32_t>(target), static_cast<std::uint32_t>(source), static_cast<std::uint32_t>(value)});
+      turns.push_back(turn);
+      changed[target] = turn + 1;
+      read[source] = std::max(read[source], turn);
+    };
+    for (std::size_t block = blocks_.size() - 1; block-- > 0;) {
+      const auto begin = static_cast<std::size_t>(blocks_[block]), end = static_cast<std::size_t>(blocks_[block + 1]);
+      for (std::size_t k = begin; k < end; ++k)
+        for (std::size_t p = below_[k]; p < right_[k]; ++p) add(unknown_[p], k, p, true);
+      for (std::size_t k = end; k-- > begin;)
+        for (std::size_t p = first_[k + 1]; p-- > right_[k];) add(k, unknown_[p], p, false);
+      for (std::size_t k = begin; k < end; ++k)
+        for (std::size_t p = above_[k]; p < above_[k + 1]; ++p) add(unknown_[p], k, p, false);
+    }
+    std::vector<std::size_t> order(in_order.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return turns[i]; });
+    for (const std::size_t i : order) products_.push_back(in_order[i]);
+  }
+
   bool is_listed_ = false;
   std::vector<std::int32_t> row_, column_, blocks_;
   // The values: for each pivot itself, from `first_` on, the entries below it, from `below_`, and on its right, from
@@ -222,8 +259,10 @@ class SparseElimination {
   std::vector<std::uint32_t> unknown_;  // of each value: the turn of its row (below, above) or its column (right)
   std::vector<std::uint32_t> target_;   // the value that changes by below * right, pivot after pivot
   std::vector<std::uint32_t> place_, entry_row_;  // of each entry of the pattern: its value, the turn of its row
+  std::vector<Product> products_;                 // of a solution
   std::vector<double> scale_;                     // of each row, by its turn
   std::vector<Number> value_, y_;
+  std::vector<Number> start_;  // of each row, by its turn: its scale divided by its pivot
 };
 
 }  // namespace continuo::detail
