@@ -102,6 +102,21 @@ template <class Real, class Coefficient>
   return enclosing::widened_by<2>(first + (total / 2 - reach), first + (total / 2 + reach));
 }
 
+/// The values and slopes on all of 0..1 from the ranges of the terms as they are: 5 n operations for n^2, and nearly as
+/// narrow where the coefficients fall quickly.
+template <class Real>
+[[nodiscard]] EnclosureWithSlope<Real> enclose_whole_polynomial_with_slope(std::span<const Real> c) {
+  const Enclosure<Real> value = enclose_whole_polynomial<Real>(c.size(), [c](std::size_t j) { return c[j]; });
+  if (c.size() == 1) return {value, Enclosure<Real>(Real(0))};
+  Real weight = 0, total = 0, factor = 1;
+  for (std::size_t j = 2; j < c.size(); ++j) {
+    factor += 1;
+    weight += factor * std::abs(c[j]), total += factor * c[j];
+  }
+  const Real excess = enclosing::polynomial_rounding<Real>(c.size()) * (weight + std::abs(c[1])) + underflow<Real>;
+  return {value, enclosing::widened(c[1] + (total - weight) / 2 - excess, c[1] + (total + weight) / 2 + excess)};
+}
+
 /// The value for one theta in 0..1.
 template <class Real>
 [[nodiscard]] Enclosure<Real> polynomial_at(std::span<const Real> c, Real theta) {

@@ -29,16 +29,20 @@ namespace continuo {
 /// What is known of a function, and how much may be spent on it.
 template <class Real>
 struct IsolationLimits {
-  Real band = 0;              // where it begins the function is zero up to here, by its rounding
-  std::size_t budget = 2000;  // evaluations; no quarter of the interval takes from what the later ones need
+  Real band = 0;                // where it begins the function is zero up to here, by its rounding
+  bool begins_on_side = false;  // for certain, so that nobody need look
+  std::size_t budget = 2000;    // evaluations; no quarter of the interval takes from what the later ones need
 };
 
 /// The result of a search for crossings.
+template <class Real>
 struct Isolation {
   int side;                     // at the end of what was looked at
   bool proved = true;           // no stretch was left undecided
   bool stopped = false;         // a callback asked for it; what lies beyond was not looked at
   std::size_t evaluations = 0;  // of enclosures
+  // After a change of side that stopped it: up to here the function only moves on, away from zero.
+  Real moves_on_to = std::numeric_limits<Real>::quiet_NaN();
 };
 
 namespace isolating {
@@ -63,6 +67,7 @@ class Walk {
         band_(std::max(limits.band, least_band())),
         least_width_(std::numeric_limits<Real>::epsilon() * std::max(std::abs(from), std::abs(to))),
         budget_(limits.budget),
+        begins_on_side_(limits.begins_on_side),
         enclose_(enclose),
         value_(value),
         visit_(visit),
@@ -70,7 +75,7 @@ class Walk {
         held_(from),
         result_{.side = side} {}
 
-  [[nodiscard]] Isolation run() {
+  [[nodiscard]] Isolation<Real> run() {
     push({from_, to_, 0, from_});
     while (count_ > 0 && !result_.stopped) {
       const Piece<Real> piece = pile_[--count_];
@@ -152,6 +157,7 @@ class Walk {
 
   /// A side that is not that of the start is left there.
   [[nodiscard]] bool contradicts_start() {
+    if (begins_on_side_) return false;
     const int sign = certain_sign(value_at(from_));
     if (sign == 0 || sign == result_.side) return false;
     meet(sign, from_);
@@ -165,6 +171,7 @@ class Walk {
       held_ = piece.to;
     } else {
       meet_at(piece.to);
+      if (result_.stopped) result_.moves_on_to = piece.to;
     }
   }
 
@@ -216,12 +223,13 @@ class Walk {
   Real band_;
   const Real least_width_;
   const std::size_t budget_;
+  const bool begins_on_side_;
   Enclose& enclose_;
   Value& value_;
   Visit& visit_;
   Undecided& undecided_;
   Real held_;  // where the function was last on its side
-  Isolation result_;
+  Isolation<Real> result_;
   bool has_left_ = false;  // the zero that it began at
   std::size_t part_ = 1, count_ = 0;
   std::array<Piece<Real>, deepest> pile_;
@@ -238,8 +246,8 @@ class Walk {
 ///   undecided(a, b) -> stop?  In their place among the others: stretches on which nothing is known. The side after
 ///       them is the one that the function has at b.
 template <class Real, class Enclose, class Value, class Visit, class Undecided>
-Isolation isolate_crossings(Real from, Real to, int side, Enclose&& enclose, Value&& value, Visit&& visit,
-                            Undecided&& undecided, const IsolationLimits<Real>& limits = {}) {
+Isolation<Real> isolate_crossings(Real from, Real to, int side, Enclose&& enclose, Value&& value, Visit&& visit,
+                                  Undecided&& undecided, const IsolationLimits<Real>& limits = {}) {
   return isolating::Walk<Real, Enclose, Value, Visit, Undecided>(from, to, side, enclose, value, visit, undecided,
                                                                  limits)
       .run();

@@ -19,7 +19,7 @@ using Curve = EnclosureWithSlope<double>;
 
 struct Found {
   std::vector<std::pair<double, double>> crossings, undecided;
-  Isolation end{};
+  Isolation<double> end{};
 };
 
 template <class F>
@@ -197,7 +197,7 @@ TEST(RootIsolation, WhatIsUndefinedSomewhereIsDecidedElsewhere) {
 TEST(RootIsolation, StopsWhenTold) {
   int visits = 0;
   const auto wave = [](const Curve& t) { return sin(t); };
-  const Isolation end = isolate_crossings(
+  const auto end = isolate_crossings(
       1.0, 100.0, 1, [&](double a, double b) { return wave(Curve({a, b}, Values(1))); },
       [&](double a) { return sin(Values(a)); }, [&](double, double, int, bool) { return ++visits == 2; },
       [](double, double) { return false; });

@@ -118,7 +118,7 @@ TEST(StepEnclosure, AWindowWithinAStepIsFound) {
   const std::vector<NodeId> nodes = {one.program->model.events[2].guard};
   StepEnclosure enclosure(*one.program, nodes, start_values(one.program->model));
   std::vector<std::pair<double, double>> found;
-  const Isolation end = isolate_crossings(
+  const auto end = isolate_crossings(
       0.0, 1.0, 1, [&](double a, double b) { return enclosure.over(one.step(), a, b)[0]; },
       [&](double a) { return enclosure.values_over(one.step(), a, a)[0]; },
       [&](double a, double b, int, bool) { return found.emplace_back(a, b), false; },

@@ -129,7 +129,7 @@ TEST(UnknownGuards, NothingIsProvedWhereTheEquationsAreSingular) {
   EXPECT_TRUE(one.enclosure.values_over(one.step(), 0.5, 0.5)[0].is_entire());
   std::vector<double> found;
   std::vector<std::pair<double, double>> undecided;
-  const Isolation end = isolate_crossings(
+  const auto end = isolate_crossings(
       0.0, 1.0, -1, [&](double a, double b) { return one.enclosure.over(one.step(), a, b)[0]; },
       [&](double a) { return one.enclosure.values_over(one.step(), a, a)[0]; },
       [&](double a, double b, int, bool) { return found.push_back((a + b) / 2), b - a > 0.1; },

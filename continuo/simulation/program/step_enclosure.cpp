@@ -29,10 +29,21 @@ bool StepEnclosure::is_solved_for(std::uint32_t component) const {
 }
 
 std::span<const EnclosureWithSlope<double>> StepEnclosure::over(const Step& step, double from, double to) {
+  // Over a whole step, ranges of the terms often show already that nothing turns.
+  if (from == 0 && to == 1 && unknowns_.empty()) {
+    const std::span<const EnclosureWithSlope<double>> quick =
+        over(step, from, to, [](std::span<const double> c) { return enclose_whole_polynomial_with_slope(c); });
+    if (std::ranges::all_of(quick, [](const auto& each) { return !each.slope.holds(0); })) return quick;
+  }
+  return over(step, from, to, [from, to](std::span<const double> c) { return enclose_polynomial(c, from, to); });
+}
+
+template <class EnclosePolynomial>
+std::span<const EnclosureWithSlope<double>> StepEnclosure::over(const Step& step, double from, double to,
+                                                                const EnclosePolynomial& enclose) {
   with_slopes_.prepare(*tape_, variables_);
   if (reads_time_) with_slopes_[Layout::time] = {step.time(from, to), Enclosure<double>(step.size)};
-  for (const std::uint32_t i : components_)
-    with_slopes_[states_begin_ + i] = enclose_polynomial(component_.of(step, i), from, to);
+  for (const std::uint32_t i : components_) with_slopes_[states_begin_ + i] = enclose(component_.of(step, i));
   for (UnknownEnclosure& block : unknowns_) {
     block.over(step, from, to);
     const std::span<const Enclosure<double>> values = block.values(), slopes = block.slopes();

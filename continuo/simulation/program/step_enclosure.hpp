@@ -41,6 +41,9 @@ class StepEnclosure {
   void set(std::uint32_t variable, double value);
 
  private:
+  template <class EnclosePolynomial>
+  [[nodiscard]] std::span<const EnclosureWithSlope<double>> over(const Step& step, double from, double to,
+                                                                 const EnclosePolynomial& enclose);
   [[nodiscard]] Enclosure<double> component_over(const Step& step, std::size_t i, double from, double to);
   [[nodiscard]] bool is_solved_for(std::uint32_t component) const;
 

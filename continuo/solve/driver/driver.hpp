@@ -401,8 +401,10 @@ class Driver {
     const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
     const auto evaluate = [&](const auto& place, auto&& values) { guards_at(place, length, values); };
     bool from_here = true;  // the search begins at t_
+    bool knows_step = false;
     while (true) {
-      if (logic_.any_guard() && Logic::has_enclosures) logic_.take_step(steps(), dense_output());
+      if (logic_.any_guard() && Logic::has_enclosures && (!std::exchange(knows_step, true) || logic_.guards_changed()))
+        logic_.take_step(steps(), dense_output());
       const std::optional<Real> tick = logic_.next_quiet(t_, steps().end());
       const bool to_tick = tick && *tick != steps().end();
       const Real to = to_tick ? *tick - begin : length;
@@ -426,6 +428,7 @@ class Driver {
         state_at(offset, length, x_);
         solved_to_rounding_ = true;
         if (is_new_step) {
+          knows_step = false;
           steps().dense_output();  // computed while the state and f are those of the step, for `at`
           logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
         }

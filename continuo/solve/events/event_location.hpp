@@ -96,7 +96,12 @@ class EventLocator {
   static constexpr std::size_t later_samples = bernstein::count - 1;
 
   explicit EventLocator(std::size_t size = 0)
-      : states_(size), scanned_(size), first_(size), scratch_(size), samples_(bernstein::count * size) {
+      : states_(size),
+        scanned_(size),
+        moves_on_(size),
+        first_(size),
+        scratch_(size),
+        samples_(bernstein::count * size) {
     crossing_.guards.reserve(size);
   }
 
@@ -108,6 +113,10 @@ class EventLocator {
   [[nodiscard]] int side_after(std::size_t i) const { return scanned_[i].side; }
   [[nodiscard]] int returns_after(std::size_t i) const { return scanned_[i].returns; }
 
+  /// To be called for every new dense output, and where the guards themselves have changed: what was proved of them
+  /// does not hold any more.
+  void begin_search() { std::ranges::fill(moves_on_, MovesOn{}); }
+
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
   /// of guard i count; the others only move its side. Crossings less than `instant` apart are one. `known` are the
   /// guards at `from`, empty where they have not been evaluated there.
@@ -116,15 +125,21 @@ class EventLocator {
                                                      Evaluate&& evaluate, DirectionOf&& direction, Enclosed enclosed) {
     resampled_ = true;
     bool found = false;
-    if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) enclosed.enclose_all(from, to);
+    bool all_enclosed = false;
     for (std::size_t i = 0; i < states_.size(); ++i) {
       first_[i] = std::numeric_limits<Real>::quiet_NaN();
       if (!states_[i].active) continue;
       scanned_[i] = states_[i];
+      if (moves_on_[i].holds(from, to, states_[i].side)) continue;
       Scan scan{.state = states_[i], .guard = i, .direction = direction(i), .from = from};
       if (enclosed.has(i) && scan.state.side != 0) {
+        if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) {
+          if (!std::exchange(all_enclosed, true)) enclosed.enclose_all(from, to);
+        }
         if (is_far(scan, enclosed)) continue;
-        isolate(scan, from, to, evaluate, enclosed);
+        if (!known.empty()) scan.at_from = known[i];
+        const bool begins_on_side = !known.empty() && !scan.state.at_zero && sign_of(known[i]) == scan.state.side;
+        isolate(scan, from, to, begins_on_side, evaluate, enclosed);
       } else {
         if (resampled_) sample(from, to, known, evaluate);
         if (cheap_no(scan)) continue;
@@ -148,13 +163,25 @@ class EventLocator {
   }
 
  private:
+  /// Between two offsets of the present step a guard is proved to move away from zero, to this side.
+  struct MovesOn {
+    Real from = std::numeric_limits<Real>::quiet_NaN(), to{};
+    int side = 0;
+
+    [[nodiscard]] bool holds(Real begin, Real end, int present) const {
+      using std::abs;
+      return abs(begin) >= abs(from) && abs(end) <= abs(to) && present == side;
+    }
+  };
+
   struct Scan {
     GuardState<Real> state;  // advances along the segment
     std::size_t guard;
     Direction direction;
     Real crossing = std::numeric_limits<Real>::quiet_NaN();
 
-    Real from{};  // where the search began
+    Real from{};                                            // where the search began
+    Real at_from = std::numeric_limits<Real>::quiet_NaN();  // the value there, if it is known
 
     void arrive_at(int side) { state = {.side = side, .band = state.band}; }
   };
@@ -207,13 +234,13 @@ class EventLocator {
 
   // Searches by proof, and samples the parts that remain undecided.
   template <class Evaluate, class Enclosed>
-  void isolate(Scan& scan, Real from, Real to, Evaluate& evaluate, Enclosed& enclosed) {
+  void isolate(Scan& scan, Real from, Real to, bool begins_on_side, Evaluate& evaluate, Enclosed& enclosed) {
     if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) {
       const Real size = enclosed.size;
       // The ends of a step are rounded, and its polynomials end at 1.
       const double first = from / size, last = std::fmin(to / size, 1.0);
       const auto offset = [&](double theta) { return theta == first ? from : theta == last ? to : Real(theta) * size; };
-      isolate_crossings(
+      const auto found = isolate_crossings(
           first, last, scan.state.side, [&](double a, double b) { return enclosed.events.enclosure(scan.guard, a, b); },
           [&](double a) { return enclosed.events.value_enclosure(scan.guard, a); },
           [&](double a, double b, int side, bool from_band) {
@@ -223,7 +250,9 @@ class EventLocator {
                    arrive_beyond(scan, side, offset(a), offset(b), guard_at(scan.guard, offset(b), evaluate), evaluate);
           },
           [&](double a, double b) { return search_anew(scan, offset(a), offset(b), evaluate, 0); },
-          {.band = scan.state.at_zero ? scan.state.band : Real(0)});
+          {.band = scan.state.at_zero ? scan.state.band : Real(0), .begins_on_side = begins_on_side});
+      if (!std::isnan(static_cast<double>(found.moves_on_to)))
+        moves_on_[scan.guard] = {scan.crossing, offset(found.moves_on_to), scan.state.side};
     }
   }
 
@@ -328,7 +357,13 @@ class EventLocator {
     if (!watches(scan.direction, side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
     const Real at_far = Real(side) * (g_far - level);
-    scan.crossing = at_far > 0 ? enclose_root(beyond, near, far, min(Real(0), beyond(near)), at_far).far : far;
+    if (at_far > 0) {
+      const bool is_known = near == scan.from && !std::isnan(static_cast<double>(scan.at_from));
+      const Real at_near = is_known ? Real(side) * (scan.at_from - level) : beyond(near);
+      scan.crossing = enclose_root(beyond, near, far, min(Real(0), at_near), at_far).far;
+    } else {
+      scan.crossing = far;
+    }
     // A guard that began at zero has left its band if it is beyond it half way.
     const Real half_way = scan.from + (scan.crossing - scan.from) / 2;
     const bool stayed = before.at_zero && !(Real(before.side) * guard_at(scan.guard, half_way, evaluate) > before.band);
@@ -352,6 +387,7 @@ class EventLocator {
   }
 
   std::vector<GuardState<Real>> states_, scanned_;
+  std::vector<MovesOn> moves_on_;
   std::vector<Real> first_, scratch_;
   std::vector<Real> samples_;  // those of all guards at one place side by side
   bool resampled_ = false;

@@ -123,8 +123,12 @@ class EventLogic {
   /// Gives the source of events the dense output of the step that is to be searched.
   void take_step(StepsOf& steps, std::span<const X> dense_output) {
     size_ = steps.size();
+    guards_changed_ = false;
+    watch_.begin_search();
     if constexpr (has_enclosures) events_.take_step(steps.system(), steps.begin(), size_, dense_output);
   }
+  /// Whether an action since then may have changed what guards are made of.
+  [[nodiscard]] bool guards_changed() const { return guards_changed_; }
   static constexpr bool has_enclosures = detail::HasEnclosures<Events, System, X>;
 
   /// Whether the system can take steps in which no guard has a root, and every guard is on its side, not at zero.
@@ -267,7 +271,7 @@ class EventLogic {
     marks_[i] = response.restart ? turned : done;
     restarted_ = restarted_ || response.restart;
     if (!any_guard_ || !(response.restart || response.changed)) return;
-    jumped_ = true;
+    jumped_ = guards_changed_ = true;
     evaluate(steps, t, x, g_);
     bool rounded = false;
     for (std::size_t k = 0; k < events_.size(); ++k) {
@@ -672,6 +676,7 @@ class EventLogic {
   X moved_, first_, second_;  // scratch
   bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
   bool jumped_ = false, restarted_ = false;  // of the present round
+  bool guards_changed_ = false;
 };
 
 }  // namespace continuo
