@@ -67,11 +67,12 @@ template <class Real, int Dim>
 using ManifoldKernel = void (*)(const ManifoldTask<Real, Dim>& task, ManifoldPass pass, std::size_t from,
                                 std::size_t to);
 
-/// A kernel, and for how many lanes it is.
+/// Kernels, and for how many lanes they are.
 template <class Real, int Dim>
 struct ManifoldKernels {
   std::size_t lanes = 0;
   ManifoldKernel<Real, Dim> apply = nullptr;
+  ManifoldKernel<Real, Dim> apply_to_point_joints = nullptr;  // see point_joint_layout.hpp
 };
 
 /// Those that this machine can run, the widest last. What they compute is the same to the last bit for all.

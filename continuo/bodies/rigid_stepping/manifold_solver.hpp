@@ -52,6 +52,7 @@ class ManifoldSolver {
                      [&](std::size_t from, std::size_t to) { kernels_.apply(task_, pass, from, to); });
   }
   [[nodiscard]] SolverState<Real, Dim>& state(std::size_t body) { return states_[body]; }
+  [[nodiscard]] SolverState<Real, Dim>* states() { return states_.data(); }
   /// The angle in the plane by which a body has turned since the step began.
   [[nodiscard]] Real& angle(std::size_t body) { return angles_[body]; }
   [[nodiscard]] std::size_t colours() const { return colours_.size(); }
@@ -176,7 +177,7 @@ class ManifoldSolver {
     put(At::normal, contact.normal);
     if constexpr (Dim == 3) put(At::across, across[0]);
     rows[At::friction * lanes] = contact.friction;
-    put(At::inertia_a, numbers_of(a.inverse_inertia_now)), put(At::inertia_b, numbers_of(b.inverse_inertia_now));
+    put(At::inertia_a, lane_numbers(a.inverse_inertia_now)), put(At::inertia_b, lane_numbers(b.inverse_inertia_now));
     for (std::size_t p = 0; p < contact.size; ++p) {
       const auto& point = contact.points[p];
       put(row(p, At::arm_a), point.arm_a), put(row(p, At::arm_b), point.arm_b);
@@ -186,10 +187,6 @@ class ManifoldSolver {
       for (std::size_t i = 0; i < across.size(); ++i)
         rows[row(p, At::impulse_across + i) * lanes] = dot(point.friction, across[i]);
     }
-  }
-  [[nodiscard]] static std::array<Real, 1> numbers_of(const Matrix<Real, 1>& inertia) { return {inertia[0][0]}; }
-  [[nodiscard]] static std::array<Real, 6> numbers_of(const Matrix<Real, 3>& i) {
-    return {i[0][0], i[1][1], i[2][2], i[0][1], i[1][2], i[2][0]};
   }
   template <class Act>
   void for_each_lane(std::span<const std::uint32_t> which, Act&& act) {

@@ -1,6 +1,7 @@
 // A rigid body as the solver of contacts and joints sees it.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -44,6 +45,16 @@ struct RigidBody {
     orientation = turned(orientation, Spin<Real, Dim>(spin + lag), h);
   }
 };
+
+/// The numbers of a moment of inertia, which is symmetric, in the order in which lanes have them (manifold_layout.hpp).
+template <class Real>
+[[nodiscard]] std::array<Real, 1> lane_numbers(const Matrix<Real, 1>& inertia) {
+  return {inertia[0][0]};
+}
+template <class Real>
+[[nodiscard]] std::array<Real, 6> lane_numbers(const Matrix<Real, 3>& i) {
+  return {i[0][0], i[1][1], i[2][2], i[0][1], i[1][2], i[2][0]};
+}
 
 /// The inverse of a moment of inertia, which is symmetric and positive definite.
 template <class Real>

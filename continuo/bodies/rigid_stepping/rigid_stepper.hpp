@@ -20,6 +20,7 @@
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
 #include <continuo/bodies/rigid_stepping/joint_rows.hpp>
 #include <continuo/bodies/rigid_stepping/manifold_solver.hpp>
+#include <continuo/bodies/rigid_stepping/point_joint_solver.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_sleep.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
@@ -57,7 +58,8 @@ class RigidStepper {
   }
   [[nodiscard]] std::size_t memory() const {
     return bodies_.capacity() * sizeof(bodies_[0]) + pairs_.memory() + contacts_.memory() + manifolds_.memory() +
-           rows_.rows.capacity() * sizeof(rows_.rows[0]) + rows_.blocks.capacity() * sizeof(RowBlock);
+           points_.memory() + rows_.rows.capacity() * sizeof(rows_.rows[0]) +
+           rows_.blocks.capacity() * sizeof(RowBlock);
   }
 
   /// The impulses of contacts and joints, and what sleeps.
@@ -94,6 +96,7 @@ class RigidStepper {
     const Real h = substep();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
     if (!swept_.empty()) manifolds_.store_impulses(contacts_.all(), swept_);
+    keep_point_joints();
     take_states();
     rebound();
     if (!all_finite()) {
@@ -121,6 +124,7 @@ class RigidStepper {
     return {};
   }
 
+  [[nodiscard]] Softness<Real> softness_of_joints() const { return softness(1 / (4 * substep()), Real(2), substep()); }
   [[nodiscard]] Real substep() const { return options_.step / static_cast<Real>(options_.substeps); }
   [[nodiscard]] bool moves(std::size_t body) const { return !bodies_[body].is_fixed(); }
   [[nodiscard]] std::uint32_t number_of(BodyHandle handle) const {
@@ -216,7 +220,18 @@ class RigidStepper {
       active_.push_back(k);
     }
     contact_rows_ = 0;
-    gather_joints();
+    find_acting_joints();
+    gather_joints(Dim);
+  }
+  /// Joints that are to act in this step.
+  void find_acting_joints() {
+    acting_joints_.clear();
+    for (std::uint32_t k = 0; k < joints_.size(); ++k) {
+      const Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
+      const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
+      if (!joint.is_broken && (moves(a) || moves(b)))
+        acting_joints_.push_back({&joint, k, a, b, is_point_joint(joint)});
+    }
   }
   /// Islands are solved directly where that is cheap: those that are as thin as a stack, and small ones, unless the
   /// world is crowded. In others contacts are swept, several at once, and joints one by one between them.
@@ -232,7 +247,9 @@ class RigidStepper {
       const bool is_thin = 4 * blocks.size() <= 5 * islands_.bodies(k).size();
       const bool is_cheap = is_thin || (!is_crowded && blocks.size() <= most_blocks_of_small_islands);
       if (is_cheap || has_joints) solvers_[k].begin(islands_, k, rows_, bodies_);
-      const bool is_large = static_cast<std::size_t>(contacts) > most_blocks_of_small_islands;
+      const auto in_lanes =
+          std::ranges::count_if(blocks, [this](std::uint32_t block) { return may_be_in_lanes(block); });
+      const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
       if (has_joints ? is_large && !solvers_[k].is_direct() : !is_cheap) is_swept_[k] = 1;
     });
     swept_.clear();
@@ -243,10 +260,18 @@ class RigidStepper {
     const auto is_in_lanes = [this](std::uint32_t i) { return i < world_.size() && is_in_lanes_[i]; };
     swept_joints_.clear();
     for (std::uint32_t block = 0; block < rows_.blocks.size(); ++block) {
-      if (!is_in_lanes(rows_.blocks[block].a) && !is_in_lanes(rows_.blocks[block].b)) continue;
+      const bool acts = is_in_lanes(rows_.blocks[block].a) || is_in_lanes(rows_.blocks[block].b);
+      const bool is_point = block >= active_.size() && may_be_in_lanes(block);
+      if (is_point) acting_joints_[block - active_.size()].is_in_lanes = acts;
+      if (!acts || is_point) continue;
       block < active_.size() ? swept_.push_back(active_[block]) : swept_joints_.push_back(block);
     }
     find_bodies_of_swept_joints();
+  }
+  /// Whether a block may be swept in lanes: that of a contact, or of a joint that keeps two points together.
+  [[nodiscard]] bool may_be_in_lanes(std::uint32_t block) const {
+    if (block < active_.size()) return true;
+    return block < active_.size() + acting_joints_.size() && acting_joints_[block - active_.size()].is_in_lanes;
   }
   void find_bodies_of_swept_joints() {
     joined_.clear();
@@ -280,27 +305,29 @@ class RigidStepper {
     if (world_.has_traits() && (world_.traits(found.a).is_sensor || world_.traits(found.b).is_sensor)) return false;
     return !world_.may_push || world_.may_push(world_, found.a, found.b, found.contact.normal);
   }
-  void gather_joints() {
+  /// Those in lanes have blocks without rows; before it is known whether they are, blocks for so many rows to come.
+  void gather_joints(std::size_t rows_in_lanes = 0) {
     rows_.rows.resize(contact_rows_), rows_.blocks.resize(active_.size());
-    joint_rows_.clear(), acting_joints_.clear();
+    joint_rows_.clear();
     if (joints_.empty() && !world_.has_traits()) return;
     for (RigidBody<Real, Dim>& body : bodies_) body.stiffening = {};
     const Real h = substep();
-    const Softness<Real> soft = softness(1 / (4 * h), Real(2), h);
+    const Softness<Real> soft = softness_of_joints();
     const JointHardness<Real> direct{.h = h, .rate = 1 / h, .softness = Real(0), .fastest_push = options_.fastest_push};
     const JointHardness<Real> swept{
         .h = h, .rate = soft.rate, .softness = soft.of_impulse / soft.of_mass, .fastest_push = options_.fastest_push};
-    for (std::size_t k = 0; k < joints_.size(); ++k) {
-      const Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
-      const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
-      if (joint.is_broken || (!moves(a) && !moves(b))) continue;
-      acting_joints_.push_back(static_cast<std::uint32_t>(k));
-      add_rows(joint, joints_[k].impulses, a, b, bodies_[a], bodies_[b], joints_[k].is_swept ? swept : direct, rows_,
+    for (const ActingJoint& acting : acting_joints_) {
+      const auto [joint, k, a, b, is_in_lanes] = acting;
+      if (is_in_lanes) {
+        rows_.blocks.push_back({.a = a, .b = b, .rows = static_cast<std::uint16_t>(rows_in_lanes)});
+        continue;
+      }
+      add_rows(*joint, joints_[k].impulses, a, b, bodies_[a], bodies_[b], joints_[k].is_swept ? swept : direct, rows_,
                joint_rows_);
       // Impulses are forces times h.
       const V force = joints_[k].linear;
-      add_stiffening(V(bodies_[a].axes * joint.anchor_a), V(-force), h, bodies_[a].stiffening);
-      add_stiffening(V(bodies_[b].axes * joint.anchor_b), force, h, bodies_[b].stiffening);
+      add_stiffening(V(bodies_[a].axes * joint->anchor_a), V(-force), h, bodies_[a].stiffening);
+      add_stiffening(V(bodies_[b].axes * joint->anchor_b), force, h, bodies_[b].stiffening);
     }
     for (std::uint32_t i = 0; world_.has_traits() && i < world_.size(); ++i)
       if (const Locked locked = world_.traits(i).locked; locked != Locked::none && moves(i)) add_locks(i, locked);
@@ -341,17 +368,20 @@ class RigidStepper {
         if (block >= active_.size() + acting_joints_.size() || (is_swept_[k] && block < active_.size())) {
           continue;
         } else if (block >= active_.size()) {
-          joints_[acting_joints_[block - active_.size()]].is_swept = is_swept_[k] || !solvers_[k].is_direct();
+          joints_[acting_joints_[block - active_.size()].number].is_swept = is_swept_[k] || !solvers_[k].is_direct();
         } else if (solvers_[k].is_direct())
           hardness_[block] = {h, Real(0.2) / h, Real(0), options_.fastest_push};
   }
   void begin_swept() {
     in_lanes_.clear(), easy_.clear();
     is_easy_.assign(world_.size(), false);
-    if (swept_.empty()) return;
+    gather_point_joints();
+    if (!has_lanes()) return;
     const Real h = substep();
     const Softness<Real> soft = softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h);
     manifolds_.begin(bodies_, contacts_.all(), swept_);
+    points_.begin(bodies_, manifolds_.states(), point_joints_);
+    points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, options_.fastest_push);
     // One sweep leaves bodies that are deep in each other a part of the speed at which they are pushed apart.
     const Real deep = options_.fastest_push / (8 * soft.rate);
@@ -364,14 +394,31 @@ class RigidStepper {
             ? sweeps_of_deep_contacts
             : 1;
     statistics.colours = manifolds_.colours();
-    const bool is_simple = only_gravity(world_) && !world_.has_traits() && world_.torque_laws.empty();
+    const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
       const RigidBody<Real, Dim>& body = bodies_[i];
       if (!body.is_fixed() && is_alone_[i]) is_in_lanes_[i] = true;
       const bool is_driven = body.is_fixed() && (body.v != V{} || body.spin != S{});
       if (is_in_lanes_[i] || is_driven)
-        (is_easy_[i] = is_simple && body.is_ball && !is_driven) ? easy_.push_back(i) : in_lanes_.push_back(i);
+        (is_easy_[i] = is_simple && body.is_ball && !is_driven && !is_damped(i)) ? easy_.push_back(i)
+                                                                                 : in_lanes_.push_back(i);
     }
+  }
+  [[nodiscard]] bool is_damped(std::size_t i) const {
+    if (!world_.has_traits()) return false;
+    const BodyTraits<Real> traits = world_.traits(i);
+    return traits.damping > Real(0) || traits.spin_damping > Real(0);
+  }
+  [[nodiscard]] bool has_lanes() const { return !swept_.empty() || !point_joints_.empty(); }
+  void gather_point_joints() {
+    point_joints_.clear();
+    for (const ActingJoint& acting : acting_joints_)
+      if (const auto [joint, k, a, b, is_in_lanes] = acting; is_in_lanes)
+        point_joints_.push_back({.a = a,
+                                 .b = b,
+                                 .arm_a = bodies_[a].axes * joint->anchor_a,
+                                 .arm_b = bodies_[b].axes * joint->anchor_b,
+                                 .impulse = joints_[k].linear});
   }
   template <class Act>
   void for_each_island(Act&& act) {
@@ -392,8 +439,8 @@ class RigidStepper {
       limit_energy(k, RowPass::push);
     });
     for (std::size_t i = 0; i < world_.size(); ++i)
-      if (swept_.empty() || !is_in_lanes_[i]) move(i, h);
-    if (!swept_.empty()) push_swept(h);
+      if (!is_in_lanes_[i]) move(i, h);
+    if (has_lanes()) push_swept(h);
     keep_joints();
     for (const std::uint32_t i : joined_) take_state(i);
     if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
@@ -402,7 +449,7 @@ class RigidStepper {
       if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
       limit_energy(k, RowPass::relax);
     });
-    for (int k = 0; !swept_.empty() && k < relaxing_sweeps_; ++k) relax_swept();
+    for (int k = 0; has_lanes() && k < relaxing_sweeps_; ++k) relax_swept();
     note_greatest_impulses();
     keep_contacts();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
@@ -503,11 +550,13 @@ class RigidStepper {
   /// Constraints push, and bodies move.
   void push_swept(const Real& h) {
     manifolds_.sweep(ManifoldPass::begin);
+    points_.sweep(ManifoldPass::begin);
     for_each_swept_joint([this](const RowBlock& block, auto& a, auto& b) {
       for (const auto& row : rows_.of(block))
         if (row.impulse != Real(0)) row.apply(row.impulse, a, b);
     });
     sweep_joints(RowPass::push);
+    points_.sweep(ManifoldPass::push);
     manifolds_.sweep(ManifoldPass::push);
     team_.for_each(0, in_lanes_.size(), 128, [&](std::size_t from, std::size_t to) {
       for (const std::uint32_t i : std::span(in_lanes_).subspan(from, to - from)) move_state(i, bodies_[i].lag, h);
@@ -518,6 +567,7 @@ class RigidStepper {
   }
   void relax_swept() {
     sweep_joints(RowPass::relax);
+    points_.sweep(ManifoldPass::relax);
     manifolds_.sweep(ManifoldPass::relax);
   }
   void sweep_joints(RowPass pass) {
@@ -547,7 +597,7 @@ class RigidStepper {
       state.set_moved(state.moved() - acceleration_[i] * (h * h / 2));
   }
   void take_states() {
-    if (swept_.empty()) return;
+    if (!has_lanes()) return;
     team_.for_each(0, world_.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i)
         if (is_in_lanes_[i]) take_state(i);
@@ -567,7 +617,7 @@ class RigidStepper {
     }
     body.axes = rotation(body.orientation);
   }
-  [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size(); }
+  [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size() + point_joints_.size(); }
   void accelerate(const Real& now, const Real& h) {
     const std::size_t n = world_.size();
     acceleration_.resize(n);
@@ -630,7 +680,8 @@ class RigidStepper {
   }
   void keep_joints() {
     for (std::size_t k = 0, r = 0; k < acting_joints_.size(); ++k) {
-      KeptJoint& joint = joints_[acting_joints_[k]];
+      if (acting_joints_[k].is_in_lanes) continue;
+      KeptJoint& joint = joints_[acting_joints_[k].number];
       const RowBlock& block = rows_.blocks[active_.size() + k];
       joint.impulses = {}, joint.linear = {}, joint.angular = {};
       for (const auto& row : rows_.of(block)) {
@@ -640,7 +691,18 @@ class RigidStepper {
       }
     }
   }
-
+  /// Those of the last substep, of joints in lanes. Their rows would be along the axes of a.
+  void keep_point_joints() {
+    std::size_t n = 0;
+    for (const ActingJoint& acting : acting_joints_) {
+      if (!acting.is_in_lanes) continue;
+      KeptJoint& kept = joints_[acting.number];
+      kept.impulses = {}, kept.angular = {};
+      kept.linear = points_.impulse(n++);
+      const Matrix<Real, Dim> axes = bodies_[acting.a].axes * acting.joint->axes_a;
+      for (std::size_t i = 0; i < Dim; ++i) kept.impulses[i] = dot(axes[i], kept.linear);
+    }
+  }
   /// @}
   void note_greatest_impulses() {
     for (const std::uint32_t k : scalar_) {
@@ -717,8 +779,10 @@ class RigidStepper {
         });
     for (const std::uint32_t block : swept_joints_)
       for (auto& row : rows_.of(rows_.blocks[block])) row.impulse = Real(0), row.bias_at_end = Real(0);
+    points_.clear_impulses();
     for (int k = 0; k < sweeps_of_impacts; ++k) {
       sweep_joints(RowPass::relax);
+      points_.sweep(ManifoldPass::rebound);
       manifolds_.sweep(ManifoldPass::rebound);
     }
   }
@@ -770,7 +834,8 @@ class RigidStepper {
   }
   void store_joints() {
     const Real h = substep();
-    for (const std::uint32_t k : acting_joints_) {
+    for (const ActingJoint& acting : acting_joints_) {
+      const std::uint32_t k = acting.number;
       Joint<Real, Dim>& joint = *world_.find(joints_[k].handle);
       joint.force = joints_[k].linear * (1 / h), joint.torque = joints_[k].angular * (1 / h);
       joint.motor_effort = joints_[k].impulses[static_cast<std::size_t>(JointRow::motor)] / h;
@@ -830,6 +895,13 @@ class RigidStepper {
     std::vector<std::array<std::uint64_t, 2>> masks{};
     friend bool operator==(const Rules&, const Rules&) = default;
   };
+  /// A joint of this step.
+  struct ActingJoint {
+    const Joint<Real, Dim>* joint = nullptr;
+    std::uint32_t number = 0;    // among the kept ones
+    std::uint32_t a = 0, b = 0;  // bodies
+    bool is_in_lanes = false;    // before it is known whether its island is: whether it may be
+  };
   struct KeptJoint {
     JointHandle handle{};
     JointImpulses<Real> impulses{};  // of the last substep
@@ -860,6 +932,7 @@ class RigidStepper {
   FastOptions<Real> options_;
   ThreadTeam team_;
   ManifoldSolver<Real, Dim> manifolds_{team_};
+  PointJointSolver<Real, Dim> points_{team_};
   std::vector<std::uint32_t> swept_;            // the contacts of islands that are swept
   int relaxing_sweeps_ = 1;                     // of these, in a substep
   std::vector<std::uint32_t> swept_joints_;     // their blocks of joints and locks
@@ -877,7 +950,8 @@ class RigidStepper {
   std::size_t contact_rows_ = 0;
   std::vector<JointHandle> joint_handles_;
   std::vector<KeptJoint> joints_;
-  std::vector<std::uint32_t> acting_joints_;  // the joint of each block after those of contacts
+  std::vector<ActingJoint> acting_joints_;           // of each block after those of contacts
+  std::vector<PointJoint<Real, Dim>> point_joints_;  // those in lanes
   std::vector<JointRow> joint_rows_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
   Rules rules_;                                                 // of the pairs
