@@ -30,11 +30,13 @@ class BlockPattern {
                              std::size_t most_updates) {
     std::vector<std::vector<std::uint32_t>> near(size);
     for (const auto& [a, b] : edges) near[a].push_back(b), near[b].push_back(a);
+    std::size_t ends = 0;
     for (auto& row : near) {
       std::ranges::sort(row);
       row.erase(std::unique(row.begin(), row.end()), row.end());
+      ends += row.size();
     }
-    return eliminate(near, most_updates);
+    return needs_at_most(most_updates, size, ends / 2) && eliminate(near, most_updates);
   }
 
   [[nodiscard]] std::size_t size() const { return order_.size(); }
@@ -52,12 +54,19 @@ class BlockPattern {
   }
 
  private:
+  /// False where no order of elimination can do: the columns of L have at least as many blocks as there are edges, and
+  /// d of them need d (d + 1) / 2 products, of which the sum is least where all columns have the same number.
+  [[nodiscard]] static bool needs_at_most(std::size_t most_updates, std::size_t size, std::size_t edges) {
+    const double of_column = static_cast<double>(edges) / static_cast<double>(std::max<std::size_t>(size, 1));
+    return static_cast<double>(edges) * (of_column + 1) / 2 <= static_cast<double>(most_updates);
+  }
   [[nodiscard]] bool eliminate(std::vector<std::vector<std::uint32_t>>& near, std::size_t most_updates) {
     const std::size_t n = near.size();
     std::vector<std::vector<std::uint32_t>> by_degree(n + 1);
     for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;) by_degree[near[i].size()].push_back(i);
     place_.assign(n, not_placed), order_.clear();
     std::vector<std::vector<std::uint32_t>> columns;
+    std::vector<std::uint32_t> both;
     std::size_t updates = 0;
     for (std::size_t degree = 0; order_.size() < n;) {
       if (by_degree[degree].empty()) {
@@ -72,7 +81,7 @@ class BlockPattern {
       place_[body] = static_cast<std::uint32_t>(order_.size());
       order_.push_back(body);
       for (const std::uint32_t i : near[body]) {
-        join(near[i], near[body], i, body);
+        join(near[i], near[body], i, body, both);
         by_degree[near[i].size()].push_back(i);
         degree = std::min(degree, near[i].size());
       }
@@ -83,11 +92,11 @@ class BlockPattern {
   }
   /// The neighbours of an eliminated body become neighbours of each other.
   static void join(std::vector<std::uint32_t>& of_i, const std::vector<std::uint32_t>& of_body, std::uint32_t i,
-                   std::uint32_t body) {
-    std::vector<std::uint32_t> all;
-    std::ranges::set_union(of_i, of_body, std::back_inserter(all));
-    std::erase_if(all, [&](std::uint32_t j) { return j == i || j == body; });
-    of_i = std::move(all);
+                   std::uint32_t body, std::vector<std::uint32_t>& both) {
+    both.clear();
+    std::ranges::set_union(of_i, of_body, std::back_inserter(both));
+    std::erase_if(both, [&](std::uint32_t j) { return j == i || j == body; });
+    of_i.assign(both.begin(), both.end());
   }
   void store(const std::vector<std::vector<std::uint32_t>>& columns) {
     entries_.clear(), begin_.assign(1, 0);

@@ -85,10 +85,10 @@ class StoppingTimes {
   void find_first_contact(const RigidPart<Real, Dim>& part) {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     const MovingBody<Real, Dim> moving = motion_of(part, body, step_);
-    for (const std::uint32_t j : parts_near(swept_by(part))) {
+    for (const std::uint32_t j : parts_near(part)) {
       const RigidPart<Real, Dim>& other = pairs_.parts()[j];
-      if (other.body == part.body || !world_.collide(part.body, other.body)) continue;
-      if (world_.traits(other.body).is_sensor || !may_pass(part, other) || has_contact(part, other)) continue;
+      if (!world_.collide(part.body, other.body)) continue;
+      if (world_.traits(other.body).is_sensor || has_contact(part, other)) continue;
       const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
                                          part.inner_radius / 100);
       if (contact && contact->time > Real(0)) stop(part.body, contact->time, other.body);
@@ -118,14 +118,20 @@ class StoppingTimes {
     return grown(united(pairs_.bounds_at(part, before(body)), pairs_.bounds_at(part, body)),
                  std::min(way(part), part.convex->reach));
   }
-  /// The parts that one may meet which sweeps these bounds, in the order of their numbers: fast ones on their ways, and
+  /// The parts of other bodies that one may meet on its way, and pass, in the order of their numbers: fast ones on their ways, and
   /// others where the step began, with the margin of contacts. The rooms of the pairs are larger by what has been
   /// before, and their tree has an order of its own: a run that goes on from a snapshot has others.
-  [[nodiscard]] std::vector<std::uint32_t> parts_near(const Bounds<Real, Dim>& swept) const {
+  [[nodiscard]] std::vector<std::uint32_t> parts_near(const RigidPart<Real, Dim>& of) const {
+    const Bounds<Real, Dim> swept = swept_by(of);
+    const auto matters = [&](std::uint32_t j) {
+      return pairs_.parts()[j].body != of.body && may_pass(of, pairs_.parts()[j]);
+    };
     std::vector<std::uint32_t> near;
-    tree_of_fast_.for_each_overlap(swept, [&](std::uint32_t k) { near.push_back(fast_[k]); });
+    tree_of_fast_.for_each_overlap(swept, [&](std::uint32_t k) {
+      if (matters(fast_[k])) near.push_back(fast_[k]);
+    });
     pairs_.tree().for_each_overlap(swept, [&](std::uint32_t j) {
-      if (is_fast_[j]) return;
+      if (is_fast_[j] || !matters(j)) return;
       const RigidPart<Real, Dim>& part = pairs_.parts()[j];
       if (overlap(swept, pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_))) near.push_back(j);
     });

@@ -41,6 +41,7 @@ class DirectSolver {
   /// The two bodies of a block of rows, numbered within the island.
   struct Pair {
     std::uint32_t a = fixed, b = fixed;
+    friend bool operator==(const Pair&, const Pair&) = default;
   };
   static constexpr std::uint32_t fixed = 0xffffffff;
 

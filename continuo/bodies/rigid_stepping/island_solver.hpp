@@ -22,6 +22,8 @@ class IslandSolver {
   void begin(const RigidIslands& islands, std::size_t island, const Constraints<Real, Dim>& all,
              std::span<const RigidBody<Real, Dim>> bodies) {
     members_ = islands.bodies(island), blocks_ = islands.blocks(island);
+    const std::size_t bodies_before = analysed_bodies_, most_before = most_updates_;
+    pairs_before_.swap(pairs_);
     pairs_.clear();
     has_joints_ = false;
     std::size_t rows = 0;
@@ -35,8 +37,11 @@ class IslandSolver {
       rows += block.rows;
     }
     // A product of blocks costs as much as some ten rows of a sweep, of which a step has two for each substep.
-    const std::size_t most_updates = rows / 2 + 100;
-    is_direct_ = direct_.analyse(members_.size(), pairs_, most_updates);
+    analysed_bodies_ = members_.size(), most_updates_ = rows / 2 + 100;
+    // The same graph as in the last step has the same pattern.
+    if (analysed_bodies_ != bodies_before || most_updates_ != most_before || pairs_ != pairs_before_)
+      is_thin_ = direct_.analyse(members_.size(), pairs_, most_updates_);
+    is_direct_ = is_thin_;
     is_loaded_ = false;
     sweeps_ = 1;
   }
@@ -146,7 +151,9 @@ class IslandSolver {
 
   DirectSolver<Dim> direct_;
   std::span<const std::uint32_t> members_, blocks_;
-  std::vector<typename DirectSolver<Dim>::Pair> pairs_;
+  std::vector<typename DirectSolver<Dim>::Pair> pairs_, pairs_before_;
+  std::size_t analysed_bodies_ = 0, most_updates_ = 0;
+  bool is_thin_ = false;  // whether the graph can be factorized
   bool is_direct_ = false, has_joints_ = false, is_loaded_ = false;
   int sweeps_ = 1;
 };

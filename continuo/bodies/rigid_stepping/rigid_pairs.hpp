@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -112,7 +113,7 @@ class RigidPairs {
         if (may_touch(i, j)) pairs_.push_back({i, j});
       });
       for (std::uint32_t i = 0; i < parts_.size(); ++i) add_walls(world, i);
-      std::ranges::sort(pairs_);
+      sort_pairs();
     } else {
       std::erase_if(pairs_, [&](const PartPair& pair) {
         return has_moved_[pair.a] || (pair.b < parts_.size() && has_moved_[pair.b]);
@@ -133,6 +134,18 @@ class RigidPairs {
   }
 
  private:
+  /// By counting those of each part: the few of one part are sorted alone.
+  void sort_pairs() {
+    first_pair_.assign(parts_.size() + 1, 0);
+    for (const PartPair& pair : pairs_) ++first_pair_[pair.a + 1];
+    std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
+    merged_.resize(pairs_.size());
+    for (const PartPair& pair : pairs_) merged_[first_pair_[pair.a]++] = pair;
+    pairs_.swap(merged_);
+    for (std::size_t i = 0, first = 0; i < parts_.size(); first = first_pair_[i++])
+      std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(first),
+                pairs_.begin() + static_cast<std::ptrdiff_t>(first_pair_[i]));
+  }
   [[nodiscard]] static Real inner_radius(const Convex<Real, Dim>& convex) {
     Real least = convex.core.faces.empty() ? Real(0) : convex.core.faces.front().offset;
     for (const Face<Real, Dim>& face : convex.core.faces) least = std::min(least, face.offset);
@@ -206,6 +219,7 @@ class RigidPairs {
   std::vector<std::uint32_t> moved_;
   std::vector<std::uint8_t> has_moved_;  // each part
   std::vector<PartPair> pairs_, merged_;
+  std::vector<std::size_t> first_pair_;  // of each part, while they are sorted
   BoundsTree<Real, Dim> tree_;
   bool is_new_ = true;
 };

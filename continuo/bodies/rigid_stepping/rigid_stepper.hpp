@@ -152,21 +152,27 @@ class RigidStepper {
     joints_.resize(joint_handles_.size());
     for (std::size_t k = 0; k < joint_handles_.size(); ++k)
       if (joints_[k].handle != joint_handles_[k]) joints_[k] = {.handle = joint_handles_[k]};
-    apart_.clear();
+    joined_before_.swap(joined_pairs_);
+    joined_pairs_.clear();
     for (const JointHandle handle : joint_handles_) {
       const Joint<Real, Dim>& joint = *world_.find(handle);
       if (joint.collide || joint.is_broken || joint.a == BodyHandle{}) continue;
       const std::uint32_t a = number_of(joint.a), b = number_of(joint.b);
-      apart_.emplace_back(std::min(a, b), std::max(a, b));
+      joined_pairs_.emplace_back(std::min(a, b), std::max(a, b));
     }
-    std::ranges::sort(apart_);
+    if (joined_pairs_ != joined_before_) {
+      apart_ = joined_pairs_;
+      std::ranges::sort(apart_);
+    }
     take_rules();
   }
   /// Bodies that may collide from now on, as where a joint has been removed or a mask has changed, are no pair yet, and
   /// others should be none any more.
   void take_rules() {
     Rules now{.apart = apart_};
+    now.are_fixed.reserve(world_.size());
     for (std::size_t i = 0; i < world_.size(); ++i) now.are_fixed.push_back(world_.is_fixed(i));
+    if (world_.has_traits()) now.masks.reserve(world_.size());
     for (std::size_t i = 0; world_.has_traits() && i < world_.size(); ++i)
       now.masks.push_back({world_.traits(i).category, world_.traits(i).mask});
     if (now == rules_) return;
@@ -679,6 +685,7 @@ class RigidStepper {
       keep_impulses<Real, Dim>(contacts_.all()[active_[k]].contact, rows_.of(rows_.blocks[k]));
   }
   void keep_joints() {
+    if (!has_joint_rows()) return;
     for (std::size_t k = 0, r = 0; k < acting_joints_.size(); ++k) {
       if (acting_joints_[k].is_in_lanes) continue;
       KeptJoint& joint = joints_[acting_joints_[k].number];
@@ -954,6 +961,7 @@ class RigidStepper {
   std::vector<PointJoint<Real, Dim>> point_joints_;  // those in lanes
   std::vector<JointRow> joint_rows_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_pairs_, joined_before_;  // the same as the joints come
   Rules rules_;                                                 // of the pairs
   RigidIslands islands_;
   std::vector<IslandSolver<Real, Dim>> solvers_;
