@@ -77,6 +77,7 @@ class StoppingTimes {
   }
 
   [[nodiscard]] const std::vector<Stop<Real>>& stops() const { return stops_; }
+  [[nodiscard]] bool has_fast() const { return !fast_.empty(); }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
     return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())];
@@ -118,9 +119,9 @@ class StoppingTimes {
     return grown(united(pairs_.bounds_at(part, before(body)), pairs_.bounds_at(part, body)),
                  std::min(way(part), part.convex->reach));
   }
-  /// The parts of other bodies that one may meet on its way, and pass, in the order of their numbers: fast ones on their ways, and
-  /// others where the step began, with the margin of contacts. The rooms of the pairs are larger by what has been
-  /// before, and their tree has an order of its own: a run that goes on from a snapshot has others.
+  /// The parts of other bodies that one may meet on its way, and pass, in the order of their numbers: fast ones on
+  /// their ways, and others where the step began, with the margin of contacts. The rooms of the pairs are larger by
+  /// what has been before, and their tree has an order of its own: a run that goes on from a snapshot has others.
   [[nodiscard]] std::vector<std::uint32_t> parts_near(const RigidPart<Real, Dim>& of) const {
     const Bounds<Real, Dim> swept = swept_by(of);
     const auto matters = [&](std::uint32_t j) {
@@ -231,8 +232,9 @@ std::size_t stop_fast_bodies(const World<Real, Dim>& world, const RigidPairs<Rea
   StoppingTimes<Real, Dim> times(world, pairs, contacts, step, bodies);
   for (const RigidPart<Real, Dim>& part : pairs.parts())
     if (times.is_fast(part)) times.find_first_contact(part);
-  for (const PartContact<Real, Dim>& found : contacts)
-    if (found.contact.size > 0) times.find_depth(found);
+  if (times.has_fast())
+    for (const PartContact<Real, Dim>& found : contacts)
+      if (found.contact.size > 0) times.find_depth(found);
   std::size_t stopped = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
     const Stop<Real> stop = times.stops()[i];

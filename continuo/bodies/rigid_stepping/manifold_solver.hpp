@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include <continuo/bodies/manifold_kernels/solver_states.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
 #include <continuo/bodies/support/large_array.hpp>
+#include <continuo/bodies/support/prefetch.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
 
 namespace continuo {
@@ -34,7 +36,10 @@ class ManifoldSolver {
     colour(bodies, contacts, which);
     take_bodies(bodies);
     team_.for_each(0, heads_.size(), 4, [&](std::size_t from, std::size_t to) {
-      for (std::size_t batch = from; batch < to; ++batch) fill(batch, bodies, contacts, which);
+      for (std::size_t batch = from; batch < to; ++batch) {
+        prefetch_contacts(batch + 1, contacts, which);
+        fill(batch, contacts, which);
+      }
     });
     task_ = {
         .bodies = states_.data(), .values = value(0, 0, 0), .heads = heads_.data(), .a = a_.data(), .b = b_.data()};
@@ -55,11 +60,14 @@ class ManifoldSolver {
   [[nodiscard]] SolverState<Real, Dim>* states() { return states_.data(); }
   /// The angle in the plane by which a body has turned since the step began.
   [[nodiscard]] Real& angle(std::size_t body) { return angles_[body]; }
+  /// Of all points when the step began.
+  [[nodiscard]] Real least_separation() const { return *std::ranges::min_element(least_separation_); }
   [[nodiscard]] std::size_t colours() const { return colours_.size(); }
 
   /// Gives back the impulses of the last substep, and the greatest ones.
   void store_impulses(std::span<PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
     for_each_lane(which, [&](std::size_t batch, std::size_t lane, std::uint32_t k) {
+      if (lane == 0) prefetch_contacts(batch + 1, contacts, which);
       auto& contact = contacts[k].contact;
       const auto across = directions_across(contact.normal);
       for (std::size_t p = 0; p < contact.size; ++p) {
@@ -97,6 +105,7 @@ class ManifoldSolver {
   }
 
  private:
+  using LaneInertia = std::array<Real, At::of_inertia>;
   /// Numbers that begin where a register may be loaded.
   struct alignas(64) Line {
     std::array<Real, 64 / sizeof(Real)> numbers;
@@ -124,7 +133,8 @@ class ManifoldSolver {
       batches += ContactColours::is_shared(c) ? of_colour : (of_colour + lanes - 1) / lanes;
     }
     first_[ContactColours::most] = batches;
-    heads_.assign(batches, {});
+    heads_.assign(batches, {}),
+        least_separation_.assign(std::max<std::size_t>(batches, 1), std::numeric_limits<Real>::infinity());
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
     in_lane_.assign(batches * lanes, no_contact);
@@ -136,7 +146,7 @@ class ManifoldSolver {
     }
   }
   void take_bodies(Bodies bodies) {
-    states_.resize(bodies.size() + 1);
+    states_.resize(bodies.size() + 1), inertias_.resize(bodies.size());
     angles_.assign(Dim == 2 ? bodies.size() : 0, Real(0));
     states_.back() = {};
     team_.for_each(0, bodies.size(), 64, [&](std::size_t from, std::size_t to) {
@@ -146,11 +156,20 @@ class ManifoldSolver {
         state.set_inverse_mass(bodies[i].inverse_mass);
         if constexpr (Dim == 3) state.set_turn({{1, 0, 0, 0}});
         states_[i] = state;
+        inertias_[i] = lane_numbers(bodies[i].inverse_inertia_now);
       }
     });
   }
-  void fill(std::size_t batch, Bodies bodies, std::span<const PartContact<Real, Dim>> contacts,
-            std::span<const std::uint32_t> which) {
+  /// The contacts of a batch are anywhere in a list that may be larger than the caches.
+  void prefetch_contacts(std::size_t batch, std::span<const PartContact<Real, Dim>> contacts,
+                         std::span<const std::uint32_t> which) const {
+    for (std::size_t k = batch * kernels_.lanes; k < std::min((batch + 1) * kernels_.lanes, in_lane_.size()); ++k) {
+      if (in_lane_[k] == no_contact) continue;
+      const auto* const bytes = reinterpret_cast<const char*>(&contacts[which[in_lane_[k]]]);
+      for (std::size_t line = 0; line < sizeof(PartContact<Real, Dim>); line += 64) prefetch(bytes + line);
+    }
+  }
+  void fill(std::size_t batch, std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
     std::fill_n(value(batch, 0, 0), At::rows * kernels_.lanes, Real(0));
     BatchHead& head = heads_[batch];
     for (std::size_t lane = 0; lane < kernels_.lanes; ++lane) {
@@ -161,13 +180,14 @@ class ManifoldSolver {
       }
       const PartContact<Real, Dim>& found = contacts[which[member]];
       head.points = std::max(head.points, static_cast<std::uint8_t>(found.contact.size));
-      head.is_a_fixed |= bodies[found.a].is_fixed(), head.is_b_fixed |= bodies[found.b].is_fixed();
+      head.is_a_fixed |= coloured_[member].a == ColouredContact::none;
+      head.is_b_fixed |= coloured_[member].b == ColouredContact::none;
       a_[batch * kernels_.lanes + lane] = found.a, b_[batch * kernels_.lanes + lane] = found.b;
-      fill_lane(batch, lane, found.contact, bodies[found.a], bodies[found.b]);
+      fill_lane(batch, lane, found.contact, inertias_[found.a], inertias_[found.b]);
     }
   }
   void fill_lane(std::size_t batch, std::size_t lane, const RigidContact<Real, Dim>& contact,
-                 const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+                 const LaneInertia& inertia_a, const LaneInertia& inertia_b) {
     const std::size_t lanes = kernels_.lanes;
     Real* const rows = value(batch, lane, 0);
     const auto put = [&](std::size_t at, const auto& vector) {
@@ -177,11 +197,12 @@ class ManifoldSolver {
     put(At::normal, contact.normal);
     if constexpr (Dim == 3) put(At::across, across[0]);
     rows[At::friction * lanes] = contact.friction;
-    put(At::inertia_a, lane_numbers(a.inverse_inertia_now)), put(At::inertia_b, lane_numbers(b.inverse_inertia_now));
+    put(At::inertia_a, inertia_a), put(At::inertia_b, inertia_b);
     for (std::size_t p = 0; p < contact.size; ++p) {
       const auto& point = contact.points[p];
       put(row(p, At::arm_a), point.arm_a), put(row(p, At::arm_b), point.arm_b);
       rows[row(p, At::separation) * lanes] = point.separation;
+      least_separation_[batch] = std::min(least_separation_[batch], point.separation);
       rows[row(p, At::mass) * lanes] = Real(1);  // the point exists
       rows[row(p, At::impulse) * lanes] = point.impulse;
       for (std::size_t i = 0; i < across.size(); ++i)
@@ -210,6 +231,8 @@ class ManifoldSolver {
   std::array<std::size_t, ContactColours::most + 1> first_{};  // batch of each colour
   LargeArray<Line> values_;                                    // see manifold_layout.hpp
   std::vector<BatchHead> heads_;
+  std::vector<Real> least_separation_;  // of the points of each batch
+  std::vector<LaneInertia> inertias_;   // the inverse, of all bodies
   std::vector<std::uint32_t> a_, b_;    // bodies of each lane
   std::vector<std::uint32_t> in_lane_;  // which contact
 };

@@ -34,11 +34,14 @@ class RigidContacts {
   using V = Vector<Real, Dim>;
 
   /// Finds the contacts of all pairs, which may be others than before, where `is_active(a, b)` tells whether one of the
-  /// bodies is awake; contacts of others stay as they are. The walls are the last of the bodies.
+  /// bodies is awake; contacts of others stay as they are. The walls are the last of the bodies. `are_others`: whether
+  /// the pairs may be others than when this was last called.
   template <class IsActive>
-  void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+  void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs, bool are_others,
             std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active) {
-    take_pairs(pairs.pairs(), pairs.first_mesh());
+    if (are_others || !is_of_pairs_ || contacts_.size() != without_meshes_ || !world.meshes().empty())
+      take_pairs(pairs.pairs(), pairs.first_mesh());
+    is_of_pairs_ = true;
     team.for_each(0, contacts_.size(), 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k) update(world, pairs, bodies, step, is_active, contacts_[k]);
     });
@@ -55,7 +58,7 @@ class RigidContacts {
   void find_anew() {
     for (PartContact<Real, Dim>& found : contacts_) found.contact.margin = -std::numeric_limits<Real>::infinity();
   }
-  void clear() { contacts_.clear(), before_.clear(), without_meshes_ = 0; }
+  void clear() { contacts_.clear(), before_.clear(), without_meshes_ = 0, is_of_pairs_ = false; }
   /// Contacts with their impulses; the bodies are below `bodies`.
   template <class Archive>
   void transfer(Archive& archive, std::size_t bodies) {
@@ -64,6 +67,7 @@ class RigidContacts {
     archive(count);
     if constexpr (Archive::reads) {
       if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      is_of_pairs_ = false;
       contacts_.assign(static_cast<std::size_t>(count), {});
     }
     for (PartContact<Real, Dim>& found : contacts_) {
@@ -199,6 +203,7 @@ class RigidContacts {
   }
   std::vector<PartContact<Real, Dim>> contacts_, before_, mesh_before_;
   std::size_t without_meshes_ = 0;
+  bool is_of_pairs_ = false;  // whether there is one for each pair
   std::vector<PartPair> at_mesh_;
   std::vector<std::vector<PartContact<Real, Dim>>> found_;  // at meshes
 };

@@ -205,9 +205,10 @@ class RigidStepper {
              (apart_.empty() || !std::ranges::binary_search(apart_, std::pair(std::min(i, j), std::max(i, j))));
     };
     for (;;) {
-      statistics.lists += pairs_.update(team_, world_, bodies_, options_.step, collide) ? 1 : 0;
+      const bool are_others = pairs_.update(team_, world_, bodies_, options_.step, collide);
+      statistics.lists += are_others ? 1 : 0;
       const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
-      contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active);
+      contacts_.find(team_, world_, pairs_, are_others, bodies_, options_.step, is_active);
       if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return;
       load_bodies();
     }
@@ -215,6 +216,7 @@ class RigidStepper {
   /// The blocks of contacts, still without rows, and those of joints.
   void gather_blocks() {
     rows_.clear(), active_.clear();
+    has_restitution_ = false;
     const auto all = contacts_.all();
     for (std::uint32_t k = 0; k < all.size(); ++k) {
       const auto& found = all[k];
@@ -224,6 +226,7 @@ class RigidStepper {
                               .rows = static_cast<std::uint16_t>(found.contact.size * Dim),
                               .points = static_cast<std::uint16_t>(found.contact.size)});
       active_.push_back(k);
+      has_restitution_ |= found.contact.restitution > Real(0);
     }
     contact_rows_ = 0;
     find_acting_joints();
@@ -391,14 +394,7 @@ class RigidStepper {
     manifolds_.set_hardness(h, soft, options_.fastest_push);
     // One sweep leaves bodies that are deep in each other a part of the speed at which they are pushed apart.
     const Real deep = options_.fastest_push / (8 * soft.rate);
-    relaxing_sweeps_ =
-        std::ranges::any_of(swept_,
-                            [&](std::uint32_t k) {
-                              return std::ranges::any_of(contacts_.all()[k].contact.all(),
-                                                         [&](const auto& at) { return at.separation < -deep; });
-                            })
-            ? sweeps_of_deep_contacts
-            : 1;
+    relaxing_sweeps_ = manifolds_.least_separation() < -deep ? sweeps_of_deep_contacts : 1;
     statistics.colours = manifolds_.colours();
     const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
@@ -722,6 +718,7 @@ class RigidStepper {
 
   /// What came in fast leaves with its restitution: all impacts of an island together.
   void rebound() {
+    if (!has_restitution_) return;
     const Real threshold = Real(2) * length(world_.gravity) * options_.step;
     std::vector<bool> rebounds(islands_.size());
     for (std::size_t island = 0; island < islands_.size(); ++island)
@@ -954,6 +951,7 @@ class RigidStepper {
   RigidContacts<Real, Dim> contacts_;
   Constraints<Real, Dim> rows_;
   std::vector<std::uint32_t> active_;  // the contact of each block of rows
+  bool has_restitution_ = false;       // whether one of them has
   std::size_t contact_rows_ = 0;
   std::vector<JointHandle> joint_handles_;
   std::vector<KeptJoint> joints_;
@@ -962,7 +960,7 @@ class RigidStepper {
   std::vector<JointRow> joint_rows_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
   std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_pairs_, joined_before_;  // the same as the joints come
-  Rules rules_;                                                 // of the pairs
+  Rules rules_;                                                                        // of the pairs
   RigidIslands islands_;
   std::vector<IslandSolver<Real, Dim>> solvers_;
   std::vector<ContactHardness<Real>> hardness_;  // of each block
