@@ -11,6 +11,7 @@
 #include <continuo/bodies/rigid_stepping/mesh_passage.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
 #include <continuo/bodies/rigid_stepping/time_of_depth.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/shapes/cast.hpp>
 
@@ -59,7 +60,7 @@ struct Stop {
 template <class Real, int Dim>
 class StoppingTimes {
  public:
-  StoppingTimes(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+  StoppingTimes(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
                 std::span<const PartContact<Real, Dim>> contacts, const Real& step,
                 std::span<const RigidBody<Real, Dim>> bodies)
       : world_(world),
@@ -69,10 +70,11 @@ class StoppingTimes {
         bodies_(bodies),
         stops_(world.size(), {step}),
         is_fast_(pairs.parts().size()) {
-    for (std::uint32_t i = 0; i < is_fast_.size(); ++i) {
-      is_fast_[i] = moves_far(pairs.parts()[i]);
+    team.for_each(0, is_fast_.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
+    });
+    for (std::uint32_t i = 0; i < is_fast_.size(); ++i)
       if (is_fast_[i]) fast_.push_back(i), swept_.push_back(swept_by(pairs.parts()[i]));
-    }
     if (!fast_.empty()) tree_of_fast_.build(swept_);
   }
 
@@ -80,7 +82,7 @@ class StoppingTimes {
   [[nodiscard]] bool has_fast() const { return !fast_.empty(); }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
-    return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())];
+    return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())] != 0;
   }
   /// Stops at the first contact of a part with what it does not touch yet.
   void find_first_contact(const RigidPart<Real, Dim>& part) {
@@ -196,7 +198,7 @@ class StoppingTimes {
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
   std::vector<Stop<Real>> stops_;
-  std::vector<bool> is_fast_;             // of each part
+  std::vector<std::uint8_t> is_fast_;     // of each part
   std::vector<std::uint32_t> fast_;       // the parts that are
   std::vector<Bounds<Real, Dim>> swept_;  // by these
   BoundsTree<Real, Dim> tree_of_fast_;
@@ -226,10 +228,10 @@ void carry_along(RigidBody<Real, Dim>& body, const RigidBody<Real, Dim>& driven,
 
 /// Stops fast bodies. Returns how many. `bodies` have the world's bodies first.
 template <class Real, int Dim>
-std::size_t stop_fast_bodies(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+std::size_t stop_fast_bodies(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
                              std::span<const PartContact<Real, Dim>> contacts, const Real& step,
                              std::span<RigidBody<Real, Dim>> bodies) {
-  StoppingTimes<Real, Dim> times(world, pairs, contacts, step, bodies);
+  StoppingTimes<Real, Dim> times(team, world, pairs, contacts, step, bodies);
   for (const RigidPart<Real, Dim>& part : pairs.parts())
     if (times.is_fast(part)) times.find_first_contact(part);
   if (times.has_fast())

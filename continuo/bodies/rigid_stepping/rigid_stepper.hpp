@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -413,14 +414,23 @@ class RigidStepper {
   }
   [[nodiscard]] bool has_lanes() const { return !swept_.empty() || !point_joints_.empty(); }
   void gather_point_joints() {
-    point_joints_.clear();
-    for (const ActingJoint& acting : acting_joints_)
-      if (const auto [joint, k, a, b, is_in_lanes] = acting; is_in_lanes)
-        point_joints_.push_back({.a = a,
-                                 .b = b,
-                                 .arm_a = bodies_[a].axes * joint->anchor_a,
-                                 .arm_b = bodies_[b].axes * joint->anchor_b,
-                                 .impulse = joints_[k].linear});
+    acting_points_.clear();
+    for (std::uint32_t n = 0; n < acting_joints_.size(); ++n)
+      if (acting_joints_[n].is_in_lanes) acting_points_.push_back(n);
+    point_joints_.resize(acting_points_.size());
+    for_each_point_joint([this](std::size_t n, const ActingJoint& acting) {
+      point_joints_[n] = {.a = acting.a,
+                          .b = acting.b,
+                          .arm_a = bodies_[acting.a].axes * acting.joint->anchor_a,
+                          .arm_b = bodies_[acting.b].axes * acting.joint->anchor_b,
+                          .impulse = joints_[acting.number].linear};
+    });
+  }
+  template <class Act>
+  void for_each_point_joint(Act&& act) {
+    team_.for_each(0, acting_points_.size(), 128, [&](std::size_t from, std::size_t to) {
+      for (std::size_t n = from; n < to; ++n) act(n, acting_joints_[acting_points_[n]]);
+    });
   }
   template <class Act>
   void for_each_island(Act&& act) {
@@ -696,15 +706,13 @@ class RigidStepper {
   }
   /// Those of the last substep, of joints in lanes. Their rows would be along the axes of a.
   void keep_point_joints() {
-    std::size_t n = 0;
-    for (const ActingJoint& acting : acting_joints_) {
-      if (!acting.is_in_lanes) continue;
+    for_each_point_joint([this](std::size_t n, const ActingJoint& acting) {
       KeptJoint& kept = joints_[acting.number];
       kept.impulses = {}, kept.angular = {};
-      kept.linear = points_.impulse(n++);
+      kept.linear = points_.impulse(n);
       const Matrix<Real, Dim> axes = bodies_[acting.a].axes * acting.joint->axes_a;
       for (std::size_t i = 0; i < Dim; ++i) kept.impulses[i] = dot(axes[i], kept.linear);
-    }
+    });
   }
   /// @}
   void note_greatest_impulses() {
@@ -809,25 +817,29 @@ class RigidStepper {
     }
   }
 
-  [[nodiscard]] bool all_finite() const {
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      if (!is_finite(bodies_[i].x) || !is_finite(bodies_[i].v) || !is_finite(bodies_[i].spin) ||
-          !is_finite(bodies_[i].orientation))
-        return false;
-    return true;
+  [[nodiscard]] bool all_finite() {
+    std::atomic<bool> are_finite = true;
+    team_.for_each(0, world_.size(), 128, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        if (!is_finite(bodies_[i].x) || !is_finite(bodies_[i].v) || !is_finite(bodies_[i].spin) ||
+            !is_finite(bodies_[i].orientation))
+          are_finite.store(false, std::memory_order_relaxed);
+    });
+    return are_finite;
   }
   void stop_fast_bodies() {
-    statistics.impacts +=
-        continuo::stop_fast_bodies<Real, Dim>(world_, pairs_, contacts_.without_meshes(), options_.step, bodies_);
+    statistics.impacts += continuo::stop_fast_bodies<Real, Dim>(team_, world_, pairs_, contacts_.without_meshes(),
+                                                                options_.step, bodies_);
   }
 
   void store() {
-    const std::size_t n = world_.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      world_.position[i] = bodies_[i].x, world_.orientation[i] = bodies_[i].orientation;
-      if (!moves(i)) continue;
-      world_.velocity[i] = bodies_[i].v, world_.spin[i] = bodies_[i].spin;
-    }
+    team_.for_each(0, world_.size(), 128, [this](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        world_.position[i] = bodies_[i].x, world_.orientation[i] = bodies_[i].orientation;
+        if (!moves(i)) continue;
+        world_.velocity[i] = bodies_[i].v, world_.spin[i] = bodies_[i].spin;
+      }
+    });
     store_joints();
     world_.time = time_after_step(world_.time, options_.step);
     note_contacts();
@@ -956,6 +968,7 @@ class RigidStepper {
   std::vector<JointHandle> joint_handles_;
   std::vector<KeptJoint> joints_;
   std::vector<ActingJoint> acting_joints_;           // of each block after those of contacts
+  std::vector<std::uint32_t> acting_points_;         // those of them that are in lanes
   std::vector<PointJoint<Real, Dim>> point_joints_;  // those in lanes
   std::vector<JointRow> joint_rows_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> apart_;  // pairs of bodies that joints keep from colliding
