@@ -209,6 +209,8 @@ class World {
   }
   /// The group of body i, below 32.
   [[nodiscard]] std::uint32_t group(std::size_t i) const { return group_[i]; }
+  /// Bit j of element i: whether the groups i and j ignore each other.
+  [[nodiscard]] const std::array<std::uint32_t, 32>& ignored_groups() const { return ignored_; }
   /// Whether any two groups have been told to ignore each other.
   [[nodiscard]] bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
   /// Whether bodies i and j may collide: their groups do not ignore each other, and one of them can move.

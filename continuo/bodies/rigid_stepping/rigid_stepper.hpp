@@ -139,12 +139,14 @@ class RigidStepper {
   void begin() {
     bodies_.assign(bodies_of(world_), {});
     pairs_.begin(world_);
+    rules_.ignored = world_.ignored_groups();
     is_stale_ = false;
   }
   /// Takes the bodies of the world; after them, one that never moves for each wall, and one for the world itself. What
   /// sleeps is fixed for this step.
   void load() {
-    if (!is_stale_ && !pairs_.has_meshes_of(world_)) sleep_ = {};
+    const bool have_other_partners = !pairs_.has_meshes_of(world_) || rules_.ignored != world_.ignored_groups();
+    if (!is_stale_ && have_other_partners) sleep_ = {};
     if (!is_stale_ && !pairs_.is_of(world_)) contacts_.find_anew();
     if (is_stale_ || bodies_.size() != bodies_of(world_) || !pairs_.is_of(world_)) begin();
     sleep_.wake_changed(world_, bodies_);
@@ -168,9 +170,9 @@ class RigidStepper {
     take_rules();
   }
   /// Bodies that may collide from now on, as where a joint has been removed or a mask has changed, are no pair yet, and
-  /// others should be none any more.
+  /// others, as where groups ignore each other from now on, should be none any more.
   void take_rules() {
-    Rules now{.apart = apart_};
+    Rules now{.ignored = world_.ignored_groups(), .apart = apart_};
     now.are_fixed.reserve(world_.size());
     for (std::size_t i = 0; i < world_.size(); ++i) now.are_fixed.push_back(world_.is_fixed(i));
     if (world_.has_traits()) now.masks.reserve(world_.size());
@@ -904,8 +906,9 @@ class RigidStepper {
     for (std::size_t i = 0; i < world_.size(); ++i) bodies_[i].x = world_.position[i];
   }
 
-  /// Which bodies collide, beside their groups.
+  /// Which bodies collide.
   struct Rules {
+    std::array<std::uint32_t, 32> ignored{};                       // groups
     std::vector<std::pair<std::uint32_t, std::uint32_t>> apart{};  // by joints
     std::vector<bool> are_fixed{};
     std::vector<std::array<std::uint64_t, 2>> masks{};

@@ -1,6 +1,7 @@
 // A step of the fast motion, from the world to the world.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -40,6 +41,7 @@ class FastMotion<Real, Dim>::Stepper {
   }
   void refresh() {
     is_stale_ = false;
+    ignored_ = world_.ignored_groups();
     list_ = {};
     contacts_ = {};
     sleep_ = {};
@@ -149,6 +151,11 @@ class FastMotion<Real, Dim>::Stepper {
   void wake_changed() {
     if (is_stale_ || world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
     is_other_at_rest_ |= sleep_.wake_changed(world_);
+    if (ignored_ == world_.ignored_groups()) return;
+    // Some pairs are none any more, and what lay on another body may fall.
+    ignored_ = world_.ignored_groups();
+    sleep_.wake_all();
+    is_other_at_rest_ = true;
   }
   /// A step while all bodies sleep.
   [[nodiscard]] Status rest() {
@@ -317,7 +324,8 @@ class FastMotion<Real, Dim>::Stepper {
   Real friction_ = Real(0);                  // of most contacts
   std::vector<std::uint32_t> place_before_;  // of each body in the last list, until contacts have its impulses
   Sleep<Real, Dim> sleep_;
-  bool is_other_at_rest_ = false;  // other bodies sleep than when pairs were listed
+  bool is_other_at_rest_ = false;            // other bodies sleep than when pairs were listed
+  std::array<std::uint32_t, 32> ignored_{};  // groups, when pairs were listed
 };
 
 }  // namespace continuo
