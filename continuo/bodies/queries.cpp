@@ -1,10 +1,13 @@
 // Rays, regions and neighbours, answered by a tree over the bodies of a world.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <set>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include <continuo/bodies/bounds/convex_bounds.hpp>
@@ -51,6 +54,46 @@ Status prepare(Ray<Real, Dim>& ray) {
   return {};
 }
 
+/// Bounds that contain what a shape is taken for by arithmetic that rounds its places: turning it by three products and
+/// sums and moving it are wrong by less than four units in the last place of its greatest coordinate, both here and
+/// where a ray is moved to the frame of the shape.
+template <class Real, int Dim>
+Bounds<Real, Dim> with_rounding(const Bounds<Real, Dim>& bounds) {
+  Real greatest(0);
+  for (std::size_t axis = 0; axis < bounds.lower.size(); ++axis)
+    greatest = std::max({greatest, Real(std::abs(bounds.lower[axis])), Real(std::abs(bounds.upper[axis]))});
+  return grown(bounds, Real(8 * std::numeric_limits<Real>::epsilon() * greatest));
+}
+/// The cell of a point in a grid over bounds, along a curve through neighbouring cells (G. M. Morton, 1966).
+template <class Real, int Dim>
+std::uint16_t place_on_curve(const Vector<Real, Dim>& x, const Bounds<Real, Dim>& bounds) {
+  constexpr unsigned bits = 16 / Dim;
+  std::uint32_t place = 0;
+  for (std::size_t axis = 0; axis < x.size(); ++axis) {
+    const Real share = (x[axis] - bounds.lower[axis]) / (bounds.upper[axis] - bounds.lower[axis]);
+    const auto cell =
+        share > Real(0) ? static_cast<std::uint32_t>(std::min(share, Real(1)) * Real((1u << bits) - 1)) : 0;
+    for (unsigned bit = 0; bit < bits; ++bit) place |= (cell >> bit & 1u) << (bit * Dim + axis);
+  }
+  return static_cast<std::uint16_t>(place);
+}
+/// The numbers of the rays in an order in which neighbours begin near each other, and so need the same memory.
+template <class Real, int Dim>
+std::vector<std::uint32_t> order_by_place(const std::vector<Ray<Real, Dim>>& rays, const Bounds<Real, Dim>& bounds) {
+  std::vector<std::uint16_t> places;
+  std::vector<std::uint32_t> order(rays.size()), sorted(rays.size());
+  for (const Ray<Real, Dim>& ray : rays) places.push_back(place_on_curve(ray.origin, bounds));
+  std::iota(order.begin(), order.end(), 0u);
+  for (const unsigned shift : {0u, 8u}) {  // by counting, the lower byte first
+    std::array<std::uint32_t, 257> begin{};
+    for (const std::uint32_t i : order) ++begin[(places[i] >> shift & 255u) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const std::uint32_t i : order) sorted[begin[places[i] >> shift & 255u]++] = i;
+    std::swap(order, sorted);
+  }
+  return order;
+}
+
 }  // namespace
 
 template <class Real, int Dim>
@@ -76,8 +119,24 @@ Queries<Real, Dim>::Queries(const World<Real, Dim>& world)
   }
   std::vector<Bounds<Real, Dim>> bounds;
   bounds.reserve(items_.size());
-  for (const Item& item : items_) bounds.push_back(bounds_of_item(item));
+  for (const Item& item : items_) bounds.push_back(with_rounding(bounds_of_item(item)));
   tree_.build(bounds);
+  prepare_for_rays();
+}
+template <class Real, int Dim>
+void Queries<Real, Dim>::prepare_for_rays() {
+  std::vector<Item> sorted;
+  sorted.reserve(items_.size());
+  for (const std::uint32_t before : tree_.renumber()) sorted.push_back(std::move(items_[before]));
+  items_ = std::move(sorted);
+  way_tree_ = WayTree<Real, Dim>(tree_);
+  std::unordered_map<const Convex<Real, Dim>*, const Item*> first_of;  // items with a shape
+  for (Item& item : items_) {
+    if (!item.convex || item.convex->rounding != Real(0)) continue;
+    const auto [at, is_new] = first_of.try_emplace(item.convex, &item);
+    item.first_pack = is_new ? static_cast<std::uint32_t>(planes_.size()) : at->second->first_pack;
+    item.packs = is_new ? append_planes(item.convex->core, planes_) : at->second->packs;
+  }
 }
 template <class Real, int Dim>
 Bounds<Real, Dim> Queries<Real, Dim>::bounds_of_item(const Item& item) {
@@ -123,14 +182,18 @@ Real Queries<Real, Dim>::distance_to(const Item& item, const V& point) {
 }
 
 template <class Real, int Dim>
-RayHit<Real, Dim> Queries<Real, Dim>::hit_of(const Ray<Real, Dim>& ray, const Item& item) {
+RayHit<Real, Dim> Queries<Real, Dim>::hit_of(const Ray<Real, Dim>& ray, const Item& item) const {
   RayHit<Real, Dim> hit{.body = item.body, .distance = std::numeric_limits<Real>::infinity()};
   V out;
   if (!item.convex) {
     hit.distance = distance_along(ray, item.pose.centre, item.radius);
     out = ray.origin + ray.direction * hit.distance - item.pose.centre;
-  } else if (const auto entry = ray_entry(*item.convex, item.pose.local(ray.origin),
-                                          item.pose.local_direction(ray.direction), ray.reach)) {
+  } else {
+    const V origin = item.pose.local(ray.origin), direction = item.pose.local_direction(ray.direction);
+    const auto entry = item.packs > 0 ? entry_of_packs(std::span(planes_).subspan(item.first_pack, item.packs), origin,
+                                                       direction, ray.reach)
+                                      : ray_entry(*item.convex, origin, direction, ray.reach);
+    if (!entry) return hit;
     hit.distance = entry->distance;
     out = item.pose.axes * entry->normal;
   }
@@ -146,7 +209,7 @@ std::optional<RayHit<Real, Dim>> Queries<Real, Dim>::nearest_hit(Ray<Real, Dim> 
   std::optional<RayHit<Real, Dim>> nearest;  // ray.reach is its distance
   std::uint32_t number = 0;                  // of its body
   const BoxSweep<Real, Dim> sweep{.begin = {ray.origin, ray.origin}, .way = ray.direction, .end = ray.reach};
-  tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
+  way_tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
     const Item& item = items_[k];
     if (!takes(filter, item)) return ray.reach;
     const RayHit<Real, Dim> hit = hit_of(ray, item);
@@ -183,13 +246,14 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hits(std::span<
     if (Status fault = prepare(prepared[i]); !fault)
       return invalid_input("ray " + std::to_string(i) + ": " + fault.message);
   if (threads < 1) return invalid_input("the number of threads must be 1 or more");
+  const std::vector<std::uint32_t> order = order_by_place(prepared, tree_.bounds());
   std::vector<RayHit<Real, Dim>> hits(rays.size(), {.distance = std::numeric_limits<Real>::infinity()});
   ThreadTeam team(threads);
   team.run([&] {
     constexpr std::size_t block = 256;
     team.for_each(0, rays.size(), block, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i)
-        if (const auto hit = nearest_hit(prepared[i], filter)) hits[i] = *hit;
+      for (std::size_t k = from; k < to; ++k)
+        if (const auto hit = nearest_hit(prepared[order[k]], filter)) hits[order[k]] = *hit;
     });
   });
   return hits;
@@ -202,7 +266,7 @@ Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Re
   if (Status fault = prepare(ray); !fault) return fault;
   std::vector<std::pair<std::uint32_t, RayHit<Real, Dim>>> found;
   const BoxSweep<Real, Dim> sweep{.begin = {ray.origin, ray.origin}, .way = ray.direction, .end = ray.reach};
-  tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
+  way_tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
     if (!takes(filter, items_[k])) return ray.reach;
     const RayHit<Real, Dim> hit = hit_of(ray, items_[k]);
     if (is_number(hit.distance)) found.emplace_back(items_[k].number, hit);

@@ -19,7 +19,9 @@
 #include <vector>
 
 #include <continuo/bodies/bounds/bounds_tree.hpp>
+#include <continuo/bodies/bounds/way_tree.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/shapes/plane_packs.hpp>
 #include <continuo/status/result.hpp>
 
 namespace continuo {
@@ -147,6 +149,7 @@ class Queries {
     Pose<Real, Dim> pose{};                           // of the part
     std::shared_ptr<const Solid<Real, Dim>> solid{};  // keeps the part alive; null of a ball
     const Convex<Real, Dim>* convex = nullptr;        // null of a ball
+    std::uint32_t first_pack = 0, packs = 0;          // of planes; none of a ball, or of what is rounded
     Real radius{};                                    // of a ball
     std::uint32_t number = 0, group = 0;              // of the body
     std::uint64_t category = 1;
@@ -164,7 +167,7 @@ class Queries {
   /// The distance of a point to the surface of a part, below 0 inside.
   [[nodiscard]] static Real distance_to(const Item& item, const V& point);
   /// Where a ray hits a part; the distance is not a number where it does not.
-  [[nodiscard]] static RayHit<Real, Dim> hit_of(const Ray<Real, Dim>& ray, const Item& item);
+  [[nodiscard]] RayHit<Real, Dim> hit_of(const Ray<Real, Dim>& ray, const Item& item) const;
   [[nodiscard]] std::optional<RayHit<Real, Dim>> nearest_hit(Ray<Real, Dim> ray, const QueryFilter& filter) const;
   [[nodiscard]] Overlap overlap_of(std::vector<const Item*>& found) const;
   template <class Take>
@@ -172,8 +175,13 @@ class Queries {
   template <class Take>
   void mesh_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter, Take&& take) const;
 
+  /// Sorts the items, which are near each other in memory where they are so in space, and copies their planes.
+  void prepare_for_rays();
+
   std::vector<Item> items_;
-  BoundsTree<Real, Dim> tree_;  // of the items
+  std::vector<PlanePack<Real, Dim>> planes_;
+  BoundsTree<Real, Dim> tree_;   // of the items
+  WayTree<Real, Dim> way_tree_;  // likewise
   std::vector<Wall<Real, Dim>> walls_;
   std::vector<WorldMesh<Real, Dim>> meshes_;
 };

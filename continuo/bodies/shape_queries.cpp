@@ -170,7 +170,7 @@ class Queries<Real, Dim>::ShapeSearch {
                                     .way = moving.velocity,
                                     .end = end};
     std::optional<std::uint32_t> number;  // of the body that is hit
-    index_.tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
+    index_.way_tree_.for_each_on_way(sweep, [&](std::uint32_t k, const Real&) {
       const Item& item = index_.items_[k];
       if (!takes(filter_, item)) return end;
       const MovingBody<Real, Dim> still{.shape = &shape_of(item), .position = item.pose.centre, .axes = item.pose.axes};

@@ -131,15 +131,17 @@ template <class Real, int Dim>
   if (middle - half <= Real(0) && signed_distance(body, origin) <= Real(0)) return RayEntry<Real, Dim>{};
   // The way to the ball around the body is free.
   Real skipped = std::max(middle - half, Real(0));
+  // The sum is compared with the reach: what is as far as it but for rounding is as far for each shape.
+  constexpr Real endless = std::numeric_limits<Real>::infinity();
   const auto later = [&](std::optional<RayEntry<Real, Dim>> entry) {
     if (entry) entry->distance += skipped;
-    return entry;
+    return entry && entry->distance > reach ? std::nullopt : entry;
   };
   const auto& corners = body.core.corners;
   const V start = origin + direction * skipped;
-  if (corners.size() == 1) return later(entry_of_ball(corners[0], body.rounding, start, direction, reach - skipped));
+  if (corners.size() == 1) return later(entry_of_ball(corners[0], body.rounding, start, direction, endless));
   if (corners.size() == 2)
-    return later(entry_of_capsule(corners[0], corners[1], body.rounding, start, direction, reach - skipped));
+    return later(entry_of_capsule(corners[0], corners[1], body.rounding, start, direction, endless));
   const auto planes = entry_of_planes(body.core, body.rounding, start, direction, Real(reach - skipped));
   if (!planes) return std::nullopt;
   if (planes->normal != V{} && is_above_face(body, planes->normal, V(start + direction * planes->distance)))

@@ -27,6 +27,9 @@
 
 namespace continuo {
 
+template <class Real, int Dim>
+class WayTree;
+
 /// A tree of bounds. A search changes nothing, so that many threads may search at once.
 template <class Real, int Dim>
 class BoundsTree {
@@ -44,8 +47,14 @@ class BoundsTree {
   /// were near each other are no longer. Another number of leaves builds it anew.
   void refit(std::span<const Box> leaves);
 
+  /// Numbers the leaves in the order in which the tree has them, so that those that are near each other have numbers
+  /// that are. Returns their numbers of before.
+  [[nodiscard]] std::vector<std::uint32_t> renumber();
+
   /// The number of leaves.
   [[nodiscard]] std::size_t size() const { return (nodes_.size() + 1) / 2; }
+  /// Of all leaves; what is infinite is so far away as the largest number.
+  [[nodiscard]] Box bounds() const { return nodes_.empty() ? Box{} : nodes_[0].box; }
   /// How much greater the surface of all inner nodes, which is what a search costs, is now than the least since
   /// `build`.
   [[nodiscard]] double growth() const { return now_ > least_ ? now_ / least_ : 1; }
@@ -75,6 +84,7 @@ class BoundsTree {
   void for_each_near(const Vector<Real, Dim>& point, Real reach, Visit&& visit) const;
 
  private:
+  friend class WayTree<Real, Dim>;
   static constexpr std::size_t deepest = 63;
   static constexpr std::uint32_t inner = std::numeric_limits<std::uint32_t>::max();
   /// Two children are neighbours, and after their parent.
@@ -168,6 +178,18 @@ void BoundsTree<Real, Dim>::refit(std::span<const Box> leaves) {
     if (node.is_leaf()) node.box = finite(leaves[node.leaf]);
   fit_inner_nodes();
   least_ = std::min(least_, now_);
+}
+
+template <class Real, int Dim>
+std::vector<std::uint32_t> BoundsTree<Real, Dim>::renumber() {
+  std::vector<std::uint32_t> before;
+  before.reserve(size());
+  for (Node& node : nodes_)
+    if (node.is_leaf()) {
+      before.push_back(node.leaf);
+      node.leaf = static_cast<std::uint32_t>(before.size() - 1);
+    }
+  return before;
 }
 
 /// The surface is that of nodes that are not endless, since these cost the same in any tree.
