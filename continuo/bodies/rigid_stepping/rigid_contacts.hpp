@@ -58,7 +58,7 @@ class RigidContacts {
   void find_anew() {
     for (PartContact<Real, Dim>& found : contacts_) found.contact.margin = -std::numeric_limits<Real>::infinity();
   }
-  void clear() { contacts_.clear(), before_.clear(), without_meshes_ = 0, is_of_pairs_ = false; }
+  void clear() { contacts_.clear(), without_meshes_ = 0, is_of_pairs_ = false; }
   /// Contacts with their impulses; the bodies are below `bodies`.
   template <class Archive>
   void transfer(Archive& archive, std::size_t bodies) {
@@ -108,13 +108,14 @@ class RigidContacts {
     std::erase_if(contacts_, is_at_mesh);
     auto solid = pairs | std::views::filter([&](const PartPair& pair) { return pair.b < first_mesh; });
     if (std::ranges::equal(contacts_, solid, {}, &PartContact<Real, Dim>::parts)) return;
-    before_.swap(contacts_);
-    contacts_.clear();
+    // Contacts are most of the memory of a heap: no more is kept than there are.
+    const auto before = std::exchange(contacts_, {});
+    contacts_.reserve(pairs.size());
     std::size_t old = 0;
     for (const PartPair& pair : solid) {
-      while (old < before_.size() && before_[old].parts < pair) ++old;
-      const bool is_kept = old < before_.size() && before_[old].parts == pair;
-      contacts_.push_back(is_kept ? before_[old] : PartContact<Real, Dim>{.parts = pair, .contact = {}});
+      while (old < before.size() && before[old].parts < pair) ++old;
+      const bool is_kept = old < before.size() && before[old].parts == pair;
+      contacts_.push_back(is_kept ? before[old] : PartContact<Real, Dim>{.parts = pair, .contact = {}});
     }
   }
   template <class IsActive>
@@ -201,7 +202,7 @@ class RigidContacts {
     const Material<Real> both = combined(world.combine_rule, world.material[a], of_b);
     found.contact.friction = both.friction, found.contact.restitution = both.restitution;
   }
-  std::vector<PartContact<Real, Dim>> contacts_, before_, mesh_before_;
+  std::vector<PartContact<Real, Dim>> contacts_, mesh_before_;
   std::size_t without_meshes_ = 0;
   bool is_of_pairs_ = false;  // whether there is one for each pair
   std::vector<PartPair> at_mesh_;
