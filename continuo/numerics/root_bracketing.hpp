@@ -63,7 +63,7 @@ template <class Real, class F>
     if (middle == near.t || middle == far.t) return {near.t, far.t};
     Real t = middle;
     if (near.value == 0) {
-      stride = stride == 0 ? nextafter(near.t, far.t) - near.t : 2 * stride;
+      stride = stride == 0 ? 2 * (nextafter(near.t, far.t) - near.t) : 2 * stride;
       if (abs(stride) < abs(middle - near.t)) t = near.t + stride;
     } else if (slow < 3) {
       if (const std::optional<Real> guess = bracketing::inverse_quadratic(near, far, last)) {

@@ -73,8 +73,7 @@ class PointJointSolver {
     const std::size_t lane = lane_[joint];
     V sum;
     for (std::size_t i = 0; i < Dim; ++i)
-      sum[i] =
-          *const_cast<PointJointSolver*>(this)->value(lane / kernels_.lanes, lane % kernels_.lanes, At::impulse + i);
+      sum[i] = *value(lane / kernels_.lanes, lane % kernels_.lanes, At::impulse + i);
     return sum;
   }
   void clear_impulses() {
@@ -91,8 +90,14 @@ class PointJointSolver {
   struct alignas(64) Line {
     std::array<Real, 64 / sizeof(Real)> numbers;
   };
+  [[nodiscard]] std::size_t place(std::size_t batch, std::size_t lane, std::size_t row) const {
+    return (batch * At::rows + row) * kernels_.lanes + lane;
+  }
   [[nodiscard]] Real* value(std::size_t batch, std::size_t lane, std::size_t row) {
-    return values_.data()->numbers.data() + (batch * At::rows + row) * kernels_.lanes + lane;
+    return values_.data()->numbers.data() + place(batch, lane, row);
+  }
+  [[nodiscard]] const Real* value(std::size_t batch, std::size_t lane, std::size_t row) const {
+    return values_.data()->numbers.data() + place(batch, lane, row);
   }
 
   void colour(Bodies bodies, std::span<const PointJoint<Real, Dim>> joints) {

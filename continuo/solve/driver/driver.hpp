@@ -165,6 +165,7 @@ class Driver {
       end(Ending::invalid_input, why);
       return;
     }
+    before_ = x_;
     restart();
   }
   /// The same where the system need not know.
@@ -200,7 +201,8 @@ class Driver {
         interval_(interval),
         t_(interval.from),
         x_(x0),
-        before_(std::move(x0)),
+        before_(x0),
+        at_crossing_(std::move(x0)),
         begin_(begin),
         steps_(std::move(steps)),
         logic_(std::move(events), x_, interval.to < interval.from ? Real(-1) : Real(1), length_of(interval)),
@@ -425,7 +427,11 @@ class Driver {
         length = steps().end() - begin;
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
-        state_at(offset, length, x_);
+        if (is_new_step || offset != crossing->offset) {
+          state_at(offset, length, x_);
+        } else {
+          x_ = at_crossing_;
+        }
         solved_to_rounding_ = true;
         if (is_new_step) {
           knows_step = false;
@@ -523,10 +529,12 @@ class Driver {
   void look_at(const Crossing<Real>& crossing, Real from, Real length) {
     if (logic_.others_are_at_zero(crossing))
       logic_.leave_zero(crossing, guards_at(from + (crossing.offset - from) / 2, length, guard_values_));
-    const std::span<const Real> values = guards_at(crossing.offset, length, guard_values_);
+    state_at(crossing.offset, length, at_crossing_);
+    const Real t = crossing.offset == length ? steps().end() : steps().begin() + crossing.offset;
+    logic_.events().guards(steps().system(), t, at_crossing_, std::span<Real>(guard_values_));
     const Real later = crossing.offset + length / Real(1000000);
     state_at(later, length, before_);
-    logic_.look_at(steps(), crossing, values, steps().begin() + later, before_);
+    logic_.look_at(steps(), crossing, guard_values_, steps().begin() + later, before_);
   }
 
   // x at an offset into the last step, computed by theta, which keeps the digits that begin + offset would lose.
@@ -682,6 +690,9 @@ class Driver {
     if (response.changed && !response.restart) note_shifts();
     observer.on_event(*this, EventOccurrence<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
     logic_.acted(steps(), i, response, t_, x_);
+    if constexpr (!FixedSize<X>) {
+      if (dimension(x_) != dimension(before_)) before_ = x_;  // states within steps are written to it
+    }
     if (at_limit || !logic_.events().is_guard(i)) return response;
     std::optional<Real> limit = logic_.accumulation().fired(i, t_);
     if (!limit && ((logic_.is_held(i) && !response.restart) || logic_.stays(i))) limit = t_;
@@ -720,6 +731,7 @@ class Driver {
     steps_ = StepsValue<System, X>(begin_(std::move(steps().system()), x_, t_, forward(), options_));
     steps().follow(so_far);
     logic_.resize(x_);
+    at_crossing_ = x_;
     shifts_.clear();
     shifted_.clear();
     return {};
@@ -771,7 +783,7 @@ class Driver {
   Options<X> options_;
   Interval<Real> interval_;
   Real t_;
-  X x_, before_;
+  X x_, before_, at_crossing_;
   std::array<Real, 64> times_{};  // of the ends of quiet steps
   std::vector<X> samples_;        // the states of the last sample of the guards
   X solved_ = x_;
