@@ -107,14 +107,15 @@ template <class Real, class Coefficient>
 template <class Real>
 [[nodiscard]] EnclosureWithSlope<Real> enclose_whole_polynomial_with_slope(std::span<const Real> c) {
   const Enclosure<Real> value = enclose_whole_polynomial<Real>(c.size(), [c](std::size_t j) { return c[j]; });
-  if (c.size() == 1) return {value, Enclosure<Real>(Real(0))};
   Real weight = 0, total = 0, factor = 1;
   for (std::size_t j = 2; j < c.size(); ++j) {
     factor += 1;
     weight += factor * std::abs(c[j]), total += factor * c[j];
   }
-  const Real excess = enclosing::polynomial_rounding<Real>(c.size()) * (weight + std::abs(c[1])) + underflow<Real>;
-  return {value, enclosing::widened(c[1] + (total - weight) / 2 - excess, c[1] + (total + weight) / 2 + excess)};
+  const Real first = c.size() > 1 ? c[1] : Real(0);
+  if (weight == 0 && first == 0) return EnclosureWithSlope<Real>(c[0]);
+  const Real excess = enclosing::polynomial_rounding<Real>(c.size()) * (weight + std::abs(first)) + underflow<Real>;
+  return {value, enclosing::widened(first + (total - weight) / 2 - excess, first + (total + weight) / 2 + excess)};
 }
 
 /// The value for one theta in 0..1.

@@ -64,6 +64,11 @@ TEST(PolynomialEnclosure, HoldsValuesAndSlopesOfEveryDegreeOnEveryPart) {
         const auto all = whole(c);
         ASSERT_TRUE(static_cast<long double>(all.lo) <= sample.value &&
                     sample.value <= static_cast<long double>(all.hi) && all.holds(by_horner(c, theta)));
+        const auto quick = enclose_whole_polynomial_with_slope<double>(c);
+        ASSERT_EQ(quick.value.lo, all.lo);
+        ASSERT_EQ(quick.value.hi, all.hi);
+        ASSERT_TRUE(static_cast<long double>(quick.slope.lo) <= sample.slope &&
+                    sample.slope <= static_cast<long double>(quick.slope.hi));
       }
       const auto point = polynomial_at<double>(c, theta);
       ASSERT_TRUE(static_cast<long double>(point.lo) <= sample.value &&
@@ -90,6 +95,16 @@ TEST(PolynomialEnclosure, WhatStandsStillIsASingleNumber) {
   EXPECT_TRUE(range.value.is_point() && range.is_steady());
   EXPECT_TRUE(polynomial_at<double>(c, 0.3).is_point());
   EXPECT_TRUE(whole(c).is_point());
+  const auto quick = enclose_whole_polynomial_with_slope<double>(c);
+  EXPECT_TRUE(quick.value.is_point() && quick.is_steady());
+}
+
+// With coefficients that fall to a tenth, slopes that the terms may turn are those that the polynomial may turn.
+TEST(PolynomialEnclosure, TermsShowTheSlopeOfWhatHardlyBends) {
+  const std::vector<double> c = {5, 1, 0.1, -0.01, 0.001};
+  const auto slope = enclose_whole_polynomial_with_slope<double>(c).slope;
+  EXPECT_NEAR(slope.lo, 1 - 0.03, 1e-12);
+  EXPECT_NEAR(slope.hi, 1 + 0.2 + 0.004, 1e-12);
 }
 
 }  // namespace
