@@ -18,6 +18,7 @@ template <class Real, int Dim>
 struct PlanePack {
   using Register [[gnu::vector_size(16)]] = Real;
   static constexpr std::size_t width = sizeof(Register) / sizeof(Real);
+  /// One component of a vector for each plane: arrays of bare registers would lose their alignment.
   struct Part {
     Register numbers{};
   };
@@ -25,15 +26,18 @@ struct PlanePack {
   // Everything is below a plane that is not set.
   Register offset = Register{} + std::numeric_limits<Real>::max();
 
+  /// Puts the plane of a face in a lane.
   void set(std::size_t lane, const Face<Real, Dim>& face) {
     for (std::size_t axis = 0; axis < normal.size(); ++axis) normal[axis].numbers[lane] = face.normal[axis];
     offset[lane] = face.offset;
   }
+  /// Of the plane in a lane.
   [[nodiscard]] Vector<Real, Dim> normal_of(std::size_t lane) const {
     Vector<Real, Dim> n;
     for (std::size_t axis = 0; axis < normal.size(); ++axis) n[axis] = normal[axis].numbers[lane];
     return n;
   }
+  /// The product of v with each normal.
   [[nodiscard]] Register times_normals(const Vector<Real, Dim>& v) const {
     Register sum{};
     for (std::size_t axis = 0; axis < normal.size(); ++axis) sum += normal[axis].numbers * v[axis];
