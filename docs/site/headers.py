@@ -114,7 +114,7 @@ def undocumented_concepts(text):
     """(line, name) of each concept in a copy that has no comment. Doxygen does not warn of them."""
     lines, inside_private = text.split("\n"), None
     for number, line in enumerate(lines):
-        private = re.match(r"namespace (\w*(?:detail|enclosing|isolating)) \{", line)
+        private = re.match(r"namespace (\w*(?:bracketing|detail|enclosing|isolating)) \{", line)
         if private:
             inside_private = private.group(1)
         elif inside_private and line == f"}}  // namespace {inside_private}":

@@ -118,7 +118,8 @@ def public_names(cindex):
     def walk(cursor, scope):
         for child in cursor.get_children():
             is_public = child.location.file is not None and child.location.file.name in public
-            if child.kind == cindex.CursorKind.NAMESPACE and child.spelling in ("detail", "enclosing", "isolating", ""):
+            if child.kind == cindex.CursorKind.NAMESPACE and child.spelling in (
+                    "bracketing", "detail", "enclosing", "isolating", ""):
                 continue
             if child.access_specifier in (cindex.AccessSpecifier.PRIVATE, cindex.AccessSpecifier.PROTECTED):
                 continue
