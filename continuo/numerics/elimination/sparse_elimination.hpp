@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <continuo/numerics/complex_number.hpp>
@@ -247,7 +248,7 @@ class SparseElimination {
     }
     std::vector<std::size_t> order(in_order.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return turns[i]; });
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(turns[i], i); });
     for (const std::size_t i : order) products_.push_back(in_order[i]);
   }
 
