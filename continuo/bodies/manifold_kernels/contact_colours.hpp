@@ -79,4 +79,36 @@ class ContactColours {
   std::array<std::uint32_t, most + 1> first_{};
 };
 
+/// The lanes of registers that coloured contacts are solved in: batches of one colour each, one after the other. Those
+/// of the shared colour have a batch each.
+class LanesOfColours {
+ public:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  void find(const ContactColours& colours, std::size_t lanes) {
+    std::size_t batches = 0;
+    for (std::size_t c = 0; c < ContactColours::most; ++c) {
+      first_[c] = batches;
+      const std::size_t count = colours.of(c).size();
+      batches += ContactColours::is_shared(c) ? count : (count + lanes - 1) / lanes;
+    }
+    first_[ContactColours::most] = batches;
+    in_lane_.assign(batches * lanes, none);
+    for (std::size_t c = 0; c < ContactColours::most; ++c) {
+      const auto members = colours.of(c);
+      for (std::size_t i = 0; i < members.size(); ++i)
+        in_lane_[first_[c] * lanes + (ContactColours::is_shared(c) ? i * lanes : i)] = members[i];
+    }
+  }
+  /// The first batch of a colour; of the number of colours, that of batches.
+  [[nodiscard]] std::size_t first(std::size_t colour) const { return first_[colour]; }
+  [[nodiscard]] std::size_t batches() const { return first_[ContactColours::most]; }
+  /// Which contact is in each lane, or none; batch after batch.
+  [[nodiscard]] std::span<const std::uint32_t> members() const { return in_lane_; }
+
+ private:
+  std::array<std::size_t, ContactColours::most + 1> first_{};
+  std::vector<std::uint32_t> in_lane_;
+};
+
 }  // namespace continuo

@@ -206,23 +206,58 @@ struct LaneMotion {
   }
 };
 
-template <class L, int Dim>
-class ManifoldBatch {
- public:
+/// Constraints of lanes with their bodies, taken from the states of the bodies and put back there.
+template <class L, int Dim, class Layout>
+class BatchOfConstraints {
+ protected:
   using Real = typename L::value_type;
   using V = Vector<L, Dim>;
-  using At = ManifoldLayout<Dim>;
+  using At = Layout;
   using Task = ManifoldTask<Real, Dim>;
 
-  [[gnu::always_inline]] ManifoldBatch(const Task& task, std::size_t batch)
+  [[gnu::always_inline]] BatchOfConstraints(const Task& task, std::size_t batch)
       : task_(task),
         head_(task.heads[batch]),
         rows_(reinterpret_cast<L*>(task.values) + batch * At::rows),
         numbers_a_(task.a + batch * L::size),
         numbers_b_(task.b + batch * L::size),
         a_(LaneBodies<L, Dim>::load(task.bodies, numbers_a_, rows_ + At::inertia_a)),
-        b_(LaneBodies<L, Dim>::load(task.bodies, numbers_b_, rows_ + At::inertia_b)),
-        normal_(vector(At::normal)) {
+        b_(LaneBodies<L, Dim>::load(task.bodies, numbers_b_, rows_ + At::inertia_b)) {}
+
+  [[gnu::always_inline]] V vector(std::size_t row) const { return vector(rows_ + row); }
+  [[gnu::always_inline]] static V vector(const L* row) {
+    V x;
+    for (std::size_t i = 0; i < Dim; ++i) x[i] = row[i];
+    return x;
+  }
+  [[gnu::always_inline]] void push(const V& impulse, const V& arm_a, const V& arm_b) {
+    const V opposite = impulse * L(Real(-1));
+    a_.push(opposite, moment(arm_a, opposite));
+    b_.push(impulse, moment(arm_b, impulse));
+  }
+  [[gnu::always_inline]] void store() const {
+    a_.store(task_.bodies, numbers_a_, head_.is_a_fixed);
+    b_.store(task_.bodies, numbers_b_, head_.is_b_fixed);
+  }
+
+  static constexpr Real least = Real(1e-30);  // keeps 0 / 0 out
+  const Task& task_;
+  const BatchHead& head_;
+  L* rows_;
+  const std::uint32_t *numbers_a_, *numbers_b_;
+  LaneBodies<L, Dim> a_, b_;
+};
+
+template <class L, int Dim>
+class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
+  using Base = BatchOfConstraints<L, Dim, ManifoldLayout<Dim>>;
+  using Base::a_, Base::b_, Base::head_, Base::least, Base::numbers_a_, Base::numbers_b_, Base::push, Base::rows_;
+  using Base::store, Base::task_, Base::vector;
+  using typename Base::At, typename Base::Real, typename Base::Task, typename Base::V;
+
+ public:
+  [[gnu::always_inline]] ManifoldBatch(const Task& task, std::size_t batch)
+      : Base(task, batch), normal_(vector(At::normal)) {
     if constexpr (Dim == 2) {
       across_[0] = {{L(Real(0)) - normal_[1], normal_[0]}};
     } else {
@@ -264,22 +299,11 @@ class ManifoldBatch {
 
  private:
   [[gnu::always_inline]] L* rows_of(std::size_t point) const { return rows_ + At::points + point * At::of_point; }
-  [[gnu::always_inline]] V vector(std::size_t row) const { return vector(rows_ + row); }
-  [[gnu::always_inline]] static V vector(const L* row) {
-    V x;
-    for (std::size_t i = 0; i < Dim; ++i) x[i] = row[i];
-    return x;
-  }
   /// The change of velocity along a direction by an impulse of 1.
   [[gnu::always_inline]] L compliance(const V& direction, const V& arm_a, const V& arm_b) const {
     const Spin<L, Dim> of_a = moment(arm_a, direction), of_b = moment(arm_b, direction);
     const L sum = (a_.inverse_mass + b_.inverse_mass) + (dot(of_a, a_.turned(of_a)) + dot(of_b, b_.turned(of_b)));
     return xsimd::max(sum, L(least));  // lanes without a contact
-  }
-  [[gnu::always_inline]] void push(const V& impulse, const V& arm_a, const V& arm_b) {
-    const V opposite = impulse * L(Real(-1));
-    a_.push(opposite, moment(arm_a, opposite));
-    b_.push(impulse, moment(arm_b, impulse));
   }
   [[gnu::always_inline]] void resist_sliding(L* point) {
     const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
@@ -327,17 +351,6 @@ class ManifoldBatch {
     point[At::greatest_impulse] = xsimd::max(point[At::greatest_impulse], now);
     push(normal_ * (now - so_far), arm_a, arm_b);
   }
-  [[gnu::always_inline]] void store() const {
-    a_.store(task_.bodies, numbers_a_, head_.is_a_fixed);
-    b_.store(task_.bodies, numbers_b_, head_.is_b_fixed);
-  }
-
-  static constexpr Real least = Real(1e-30);  // keeps 0 / 0 out
-  const Task& task_;
-  const BatchHead& head_;
-  L* rows_;
-  const std::uint32_t *numbers_a_, *numbers_b_;
-  LaneBodies<L, Dim> a_, b_;
   V normal_;
   std::array<V, Dim - 1> across_;
 };

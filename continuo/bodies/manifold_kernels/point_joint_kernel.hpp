@@ -45,21 +45,14 @@ struct LaneTurn {
 };
 
 template <class L, int Dim>
-class PointJointBatch {
- public:
-  using Real = typename L::value_type;
-  using V = Vector<L, Dim>;
-  using At = PointJointLayout<Dim>;
-  using Task = ManifoldTask<Real, Dim>;
+class PointJointBatch : BatchOfConstraints<L, Dim, PointJointLayout<Dim>> {
+  using Base = BatchOfConstraints<L, Dim, PointJointLayout<Dim>>;
+  using Base::a_, Base::b_, Base::head_, Base::least, Base::numbers_a_, Base::numbers_b_, Base::push, Base::rows_;
+  using Base::store, Base::task_, Base::vector;
+  using typename Base::At, typename Base::Real, typename Base::Task, typename Base::V;
 
-  [[gnu::always_inline]] PointJointBatch(const Task& task, std::size_t batch)
-      : task_(task),
-        head_(task.heads[batch]),
-        rows_(reinterpret_cast<L*>(task.values) + batch * At::rows),
-        numbers_a_(task.a + batch * L::size),
-        numbers_b_(task.b + batch * L::size),
-        a_(LaneBodies<L, Dim>::load(task.bodies, numbers_a_, rows_ + At::inertia_a)),
-        b_(LaneBodies<L, Dim>::load(task.bodies, numbers_b_, rows_ + At::inertia_b)) {}
+ public:
+  [[gnu::always_inline]] PointJointBatch(const Task& task, std::size_t batch) : Base(task, batch) {}
 
   /// Takes where the bodies are now: what follows needs it, until they move.
   [[gnu::always_inline]] void prepare() {
@@ -74,7 +67,7 @@ class PointJointBatch {
     factorize();
   }
   [[gnu::always_inline]] void begin() {
-    push(vector(At::impulse));
+    push(vector(At::impulse), vector(At::arm_a), vector(At::arm_b));
     store();
   }
   template <bool is_pushing>
@@ -87,16 +80,11 @@ class PointJointBatch {
     V change = rigid;
     if constexpr (is_pushing) change = rigid * L(task_.of_mass) - so_far * L(task_.of_impulse);
     put(At::impulse, so_far + change);
-    push(change);
+    push(change, arm_a, arm_b);
     store();
   }
 
  private:
-  [[gnu::always_inline]] V vector(std::size_t row) const {
-    V x;
-    for (std::size_t i = 0; i < Dim; ++i) x[i] = rows_[row + i];
-    return x;
-  }
   [[gnu::always_inline]] void put(std::size_t row, const V& x) const {
     for (std::size_t i = 0; i < Dim; ++i) rows_[row + i] = x[i];
   }
@@ -158,22 +146,6 @@ class PointJointBatch {
       for (std::size_t i = Dim; i-- > j + 1;) x[j] -= rows_[--row] * x[i];
     return x;
   }
-  [[gnu::always_inline]] void push(const V& impulse) {
-    const V opposite = impulse * L(Real(-1));
-    a_.push(opposite, moment(vector(At::arm_a), opposite));
-    b_.push(impulse, moment(vector(At::arm_b), impulse));
-  }
-  [[gnu::always_inline]] void store() const {
-    a_.store(task_.bodies, numbers_a_, head_.is_a_fixed);
-    b_.store(task_.bodies, numbers_b_, head_.is_b_fixed);
-  }
-
-  static constexpr Real least = Real(1e-30);  // keeps 0 / 0 out
-  const Task& task_;
-  const BatchHead& head_;
-  L* rows_;
-  const std::uint32_t *numbers_a_, *numbers_b_;
-  LaneBodies<L, Dim> a_, b_;
 };
 
 /// The kernel for lanes L.

@@ -53,7 +53,8 @@ class ManifoldSolver {
   }
   void sweep(ManifoldPass pass) {
     for (std::size_t c = 0; c < ContactColours::most; ++c)
-      team_.for_each(first_[c], first_[c + 1], ContactColours::is_shared(c) ? first_[c + 1] - first_[c] : 4,
+      team_.for_each(lanes_.first(c), lanes_.first(c + 1),
+                     ContactColours::is_shared(c) ? lanes_.first(c + 1) - lanes_.first(c) : 4,
                      [&](std::size_t from, std::size_t to) { kernels_.apply(task_, pass, from, to); });
   }
   [[nodiscard]] SolverState<Real, Dim>& state(std::size_t body) { return states_[body]; }
@@ -126,24 +127,13 @@ class ManifoldSolver {
     }
     colours_.find(coloured_, bodies.size());
     const std::size_t lanes = kernels_.lanes;
-    std::size_t batches = 0;
-    for (std::size_t c = 0; c < ContactColours::most; ++c) {
-      first_[c] = batches;
-      const std::size_t of_colour = colours_.of(c).size();
-      batches += ContactColours::is_shared(c) ? of_colour : (of_colour + lanes - 1) / lanes;
-    }
-    first_[ContactColours::most] = batches;
+    lanes_.find(colours_, lanes);
+    const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {}),
         least_separation_.assign(std::max<std::size_t>(batches, 1), std::numeric_limits<Real>::infinity());
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
-    in_lane_.assign(batches * lanes, no_contact);
     values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line) + 1);
-    for (std::size_t c = 0; c < ContactColours::most; ++c) {
-      const auto members = colours_.of(c);
-      for (std::size_t i = 0; i < members.size(); ++i)
-        in_lane_[first_[c] * lanes + (ContactColours::is_shared(c) ? i * lanes : i)] = members[i];
-    }
   }
   void take_bodies(Bodies bodies) {
     states_.resize(bodies.size() + 1), inertias_.resize(bodies.size());
@@ -163,9 +153,10 @@ class ManifoldSolver {
   /// The contacts of a batch are anywhere in a list that may be larger than the caches.
   void prefetch_contacts(std::size_t batch, std::span<const PartContact<Real, Dim>> contacts,
                          std::span<const std::uint32_t> which) const {
-    for (std::size_t k = batch * kernels_.lanes; k < std::min((batch + 1) * kernels_.lanes, in_lane_.size()); ++k) {
-      if (in_lane_[k] == no_contact) continue;
-      const auto* const bytes = reinterpret_cast<const char*>(&contacts[which[in_lane_[k]]]);
+    for (std::size_t k = batch * kernels_.lanes; k < std::min((batch + 1) * kernels_.lanes, lanes_.members().size());
+         ++k) {
+      if (lanes_.members()[k] == LanesOfColours::none) continue;
+      const auto* const bytes = reinterpret_cast<const char*>(&contacts[which[lanes_.members()[k]]]);
       for (std::size_t line = 0; line < sizeof(PartContact<Real, Dim>); line += 64) prefetch(bytes + line);
     }
   }
@@ -173,8 +164,8 @@ class ManifoldSolver {
     std::fill_n(value(batch, 0, 0), At::rows * kernels_.lanes, Real(0));
     BatchHead& head = heads_[batch];
     for (std::size_t lane = 0; lane < kernels_.lanes; ++lane) {
-      const std::uint32_t member = in_lane_[batch * kernels_.lanes + lane];
-      if (member == no_contact) {
+      const std::uint32_t member = lanes_.members()[batch * kernels_.lanes + lane];
+      if (member == LanesOfColours::none) {
         head.is_a_fixed = head.is_b_fixed = true;
         continue;
       }
@@ -214,12 +205,11 @@ class ManifoldSolver {
     team_.for_each(0, heads_.size(), 8, [&](std::size_t from, std::size_t to) {
       for (std::size_t batch = from; batch < to; ++batch)
         for (std::size_t lane = 0; lane < kernels_.lanes; ++lane)
-          if (const std::uint32_t member = in_lane_[batch * kernels_.lanes + lane]; member != no_contact)
+          if (const std::uint32_t member = lanes_.members()[batch * kernels_.lanes + lane];
+              member != LanesOfColours::none)
             act(batch, lane, which[member]);
     });
   }
-
-  static constexpr std::uint32_t no_contact = 0xffffffff;
 
   ThreadTeam& team_;
   ManifoldKernels<Real, Dim> kernels_;
@@ -228,13 +218,12 @@ class ManifoldSolver {
   std::vector<Real> angles_;
   std::vector<ColouredContact> coloured_;
   ContactColours colours_;
-  std::array<std::size_t, ContactColours::most + 1> first_{};  // batch of each colour
-  LargeArray<Line> values_;                                    // see manifold_layout.hpp
+  LanesOfColours lanes_;
+  LargeArray<Line> values_;  // see manifold_layout.hpp
   std::vector<BatchHead> heads_;
   std::vector<Real> least_separation_;  // of the points of each batch
   std::vector<LaneInertia> inertias_;   // the inverse, of all bodies
   std::vector<std::uint32_t> a_, b_;    // bodies of each lane
-  std::vector<std::uint32_t> in_lane_;  // which contact
 };
 
 }  // namespace continuo

@@ -65,7 +65,8 @@ class PointJointSolver {
   void sweep(ManifoldPass pass) {
     if (empty()) return;
     for (std::size_t c = 0; c < ContactColours::most; ++c)
-      team_.for_each(first_[c], first_[c + 1], ContactColours::is_shared(c) ? first_[c + 1] - first_[c] : 8,
+      team_.for_each(lanes_.first(c), lanes_.first(c + 1),
+                     ContactColours::is_shared(c) ? lanes_.first(c + 1) - lanes_.first(c) : 8,
                      [&](std::size_t from, std::size_t to) { kernels_.apply_to_point_joints(task_, pass, from, to); });
   }
   /// Of the last substep.
@@ -106,30 +107,22 @@ class PointJointSolver {
     for (std::size_t k = 0; k < joints.size(); ++k) coloured_[k] = {mover(joints[k].a), mover(joints[k].b), 1};
     colours_.find(coloured_, bodies.size());
     const std::size_t lanes = kernels_.lanes;
-    std::size_t batches = 0;
-    lane_.resize(joints.size());
-    for (std::size_t c = 0; c < ContactColours::most; ++c) {
-      first_[c] = batches;
-      const auto members = colours_.of(c);
-      const std::size_t apart = ContactColours::is_shared(c) ? lanes : 1;
-      for (std::size_t i = 0; i < members.size(); ++i)
-        lane_[members[i]] = static_cast<std::uint32_t>(batches * lanes + i * apart);
-      batches += (members.size() * apart + lanes - 1) / lanes;
-    }
-    first_[ContactColours::most] = batches;
+    lanes_.find(colours_, lanes);
+    const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {});
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
-    in_lane_.assign(batches * lanes, no_joint);
-    for (std::size_t k = 0; k < joints.size(); ++k) in_lane_[lane_[k]] = static_cast<std::uint32_t>(k);
+    lane_.resize(joints.size());
+    for (std::uint32_t k = 0; k < batches * lanes; ++k)
+      if (const std::uint32_t joint = lanes_.members()[k]; joint != LanesOfColours::none) lane_[joint] = k;
     values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line));
   }
   void fill(std::size_t batch, Bodies bodies, std::span<const PointJoint<Real, Dim>> joints) {
     std::fill_n(value(batch, 0, 0), At::rows * kernels_.lanes, Real(0));
     BatchHead& head = heads_[batch];
     for (std::size_t lane = 0; lane < kernels_.lanes; ++lane) {
-      const std::uint32_t member = in_lane_[batch * kernels_.lanes + lane];
-      if (member == no_joint) {
+      const std::uint32_t member = lanes_.members()[batch * kernels_.lanes + lane];
+      if (member == LanesOfColours::none) {
         head.is_a_fixed = head.is_b_fixed = true;
         continue;
       }
@@ -148,20 +141,17 @@ class PointJointSolver {
     }
   }
 
-  static constexpr std::uint32_t no_joint = 0xffffffff;
-
   ThreadTeam& team_;
   ManifoldKernels<Real, Dim> kernels_;
   ManifoldTask<Real, Dim> task_;
   std::size_t size_ = 0;
   std::vector<ColouredContact> coloured_;
   ContactColours colours_;
-  std::array<std::size_t, ContactColours::most + 1> first_{};  // batch of each colour
-  LargeArray<Line> values_;                                    // see point_joint_layout.hpp
+  LanesOfColours lanes_;
+  LargeArray<Line> values_;  // see point_joint_layout.hpp
   std::vector<BatchHead> heads_;
-  std::vector<std::uint32_t> a_, b_;    // bodies of each lane
-  std::vector<std::uint32_t> in_lane_;  // which joint
-  std::vector<std::uint32_t> lane_;     // of each joint
+  std::vector<std::uint32_t> a_, b_;  // bodies of each lane
+  std::vector<std::uint32_t> lane_;   // of each joint
 };
 
 }  // namespace continuo
