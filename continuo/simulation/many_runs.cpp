@@ -199,8 +199,8 @@ class Together final : public RunWatcher<X>, public SeenRuns {
   void on_event(std::size_t run, const ModelEvents& events, const EventOccurrence<X>& now) override {
     const std::size_t i = first_ + run;
     Planned& one = planned_[i];
-    for (EventName& name : one.names.of(events, now.events, true))
-      one.events.push_back({std::move(name.event), std::move(name.mark), now.t, now.before, now.after});
+    for (const EventName& name : one.names.of(events, now.events, true))
+      one.events.push_back({name.event, name.mark, now.t, now.before, now.after});
     for (std::size_t k = one.next_sample; k-- > 0 && one.samples[k].t == now.t;) one.samples[k].x = now.after;
     if (MotionWatcher* seeing = watcher(i)) seeing->on_jump(now.t, now.before, now.after);
   }

@@ -194,7 +194,7 @@ Result<std::vector<std::size_t>> WorldEvents::fire_round(WorldRun& world, const 
   }
   if (system_.mode() != world.mode()) world.go(system_.mode());
   if (after != before) world.set_state(after);
-  const std::vector<model::EventName> names = names_.of(events_, fired);
+  const std::vector<model::EventName>& names = names_.of(events_, fired);
   if (!names.empty() || after != before) sink({t, names, before});
   if (stops) stopped_by_ = names.empty() ? std::string() : names.front().event;
   stopped_ = stopped_ || stops;

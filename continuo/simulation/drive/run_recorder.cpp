@@ -159,8 +159,8 @@ double RunRecorder::quiet_until() const {
   return wants_rows() ? std::min(times_[next_output_], next_sample()) : next_sample();
 }
 
-void RunRecorder::on_event(double t, std::vector<EventName> names, const X& before, const X& after) {
-  for (EventName& name : names) events_.push_back({std::move(name.event), std::move(name.mark), t, before, after});
+void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
+  for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
   if (!samples_.empty() && t == start_) set_start_values(t, after);
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;

@@ -58,7 +58,7 @@ class RunRecorder {
   void on_segment(double to, const At& at);
   /// Up to when nothing of the motion is wanted.
   [[nodiscard]] double quiet_until() const;
-  void on_event(double t, std::vector<EventName> names, const X& before, const X& after);
+  void on_event(double t, std::span<const EventName> names, const X& before, const X& after);
   /// Where nothing is interpolated: extremes at t, and samples up to t.
   void look(double t, const X& x) { watch(t, x); }
   void sample_until(double t, const X& x);

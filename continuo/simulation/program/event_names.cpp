@@ -5,20 +5,21 @@
 
 namespace continuo::model {
 
-std::vector<EventName> EventNames::of(const ModelEvents& events, std::span<const std::size_t> fired, bool with_slides) {
-  std::vector<EventName> names;
+const std::vector<EventName>& EventNames::of(const ModelEvents& events, std::span<const std::size_t> fired,
+                                             bool with_slides) {
+  names_.clear();
   const auto marks = events.marks().subspan(marks_seen_);
   for (const std::size_t i : fired) {
     const auto mark = std::ranges::find(marks, i, &Marked::event);
     const bool is_marked = mark != marks.end();
     if (events.is_declared(i)) {
-      names.push_back({std::string(events.name(i)), is_marked ? mark->text : std::string()});
+      names_.push_back({std::string(events.name(i)), is_marked ? mark->text : std::string()});
     } else if (with_slides && events.is_jump(i) && is_marked) {
-      names.push_back({mark->text + " " + std::string(events.name(i)), {}});
+      names_.push_back({mark->text + " " + std::string(events.name(i)), {}});
     }
   }
   marks_seen_ = events.marks().size();
-  return names;
+  return names_;
 }
 
 }  // namespace continuo::model

@@ -19,9 +19,9 @@ struct EventName {
 class EventNames {
  public:
   /// Of the text's events among those that fired, and, `with_slides`, where the motion begins to slide along a surface
-  /// or leaves it. Steps of inputs and other jumps of the equations have no name.
-  [[nodiscard]] std::vector<EventName> of(const ModelEvents& events, std::span<const std::size_t> fired,
-                                          bool with_slides = false);
+  /// or leaves it. Steps of inputs and other jumps of the equations have no name. They stay until the next call.
+  [[nodiscard]] const std::vector<EventName>& of(const ModelEvents& events, std::span<const std::size_t> fired,
+                                                 bool with_slides = false);
   /// How many marks the source had at the last instant.
   [[nodiscard]] std::size_t marks_seen() const { return marks_seen_; }
   /// The source has been read from a checkpoint, where so many marks had been seen.
@@ -31,6 +31,7 @@ class EventNames {
 
  private:
   std::size_t marks_seen_ = 0;
+  std::vector<EventName> names_;  // kept from instant to instant for its memory
 };
 
 }  // namespace continuo::model
