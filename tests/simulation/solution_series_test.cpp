@@ -168,6 +168,25 @@ TEST(SolutionSeries, OfPowersWithFractionsIsThatOfTheTape) {
   }
 }
 
+// A difference is written with its terms in the order of their first use, and negated for the other one.
+constexpr std::array negated_differences{"x*(28 - z) - y",   "-(x - y)",         "(y - x)*(x - y) + z",
+                                         "-(z - x*y) - 2*z", "(x - 2)*(2 - x)",  "-(a - x)*z - (y - 1)*x",
+                                         "-(x - a)*(y - x)", "z - t + (t - z)*x"};
+
+TEST(SolutionSeries, OfNegatedDifferencesIsThatOfTheTape) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const char* first : negated_differences) {
+    for (const char* second : negated_differences) {
+      const std::string text = fmt::format(
+          "param a = 1.25\nz' = {}\ny' = {}\nx' = y - x\nx(0) = 1; y(0) = 1; z(0) = 1\nrun 0..1\n", first, second);
+      const auto program = compile(good(text));
+      const std::vector<double> x{uniform(random), uniform(random), uniform(random)};
+      ASSERT_NO_FATAL_FAILURE(expect_same(*program, text, 0.4, x));
+    }
+  }
+}
+
 // The equations are written once for all runs, which have exponents of their own.
 TEST(SolutionSeries, OfOneProgramHaveTheirOwnNumbers) {
   const std::string text = "param k = 2, n = 3\nx' = k*x^n\nx(0) = 1\nrun 0..1\n";
@@ -287,6 +306,20 @@ TEST(NativeSeries, OfRandomModelsHasTheBitsOfTheProgram) {
     SCOPED_TRACE(text);
     ASSERT_NO_FATAL_FAILURE(expect_same_bits(good(text), native, highest, random));
   }
+}
+
+TEST(NativeSeries, OfNegatedDifferencesHasTheBitsOfTheProgram) {
+  const TestFolder folder;
+  const auto native = std::make_shared<NativeCompiler>(NativeOptions{NativeUse::always, folder.path / "cache"});
+  std::mt19937 random(11);
+  std::string text = "param a = 1.25\ny' = x - y\nz' = x*y - z\nx(0) = 0.5; y(0) = 0.25; z(0) = 1\nrun 0..1\n";
+  std::string sum;
+  for (std::size_t i = 0; i < negated_differences.size(); ++i) {
+    text += fmt::format("w{}' = {}\nw{}(0) = 0.1\n", i, negated_differences[i], i);
+    sum += fmt::format(" - ({})*w{}", negated_differences[i], i);
+  }
+  text += "x' = y" + sum + "\n";
+  ASSERT_NO_FATAL_FAILURE(expect_same_bits(good(text), native, 20, random)) << text;
 }
 
 TEST(NativeSeries, OfFamiliesHasTheBitsOfTheProgram) {

@@ -143,6 +143,8 @@ class SeriesWriter {
 
   /// Linear operations on few members are written member by member: what they read may lie anywhere.
   static bool is_scattered(const SeriesOperation& o) { return is_linear(o.code) && o.count <= most_scattered; }
+  /// The sums of a product are made of its factors: of its own coefficients it needs none of lower order.
+  static bool is_single_product(const SeriesOperation& o) { return o.code == SeriesCode::product && o.count == 1; }
   static bool is_linear(SeriesCode code) { return code >= SeriesCode::add && code <= SeriesCode::divide_by_number; }
   /// Of a number, coefficient 0 is read.
   static bool is_number(SeriesCode code, std::size_t operand) {
@@ -160,11 +162,11 @@ class SeriesWriter {
   }
 
   /// Where coefficients are kept: those that nothing reads but linear operations of the same order in an array that
-  /// stays in the nearest memory. Copies that only these read are not made.
+  /// stays in registers or in the nearest memory. Copies that only these read are not made.
   void find_uses() {
     for (const SeriesOperation& o : program_.operations()) {
       const bool is_copy = o.code == SeriesCode::copy;
-      if (!is_copy && !is_scattered(o)) continue;
+      if (!is_copy && !is_scattered(o) && !is_single_product(o)) continue;
       for (std::uint32_t i = 0; i < o.count; ++i) {
         use_[o.result + i] = is_copy ? Use::nowhere : Use::once;
         if (is_copy) source_[o.result + i] = program_.copied()[o.a + i];
@@ -409,11 +411,11 @@ class SeriesWriter {
   void value(const SeriesOperation& o) {
     each(o, [&](std::string_view i) {
       const std::string a = start(o.a, i), b = start(o.b, i), r = start(o.result, i);
-      const std::string second = start(o.result + o.count, i);
+      const std::string second = start(o.result + o.count, i), product = at({true, 0}, o.result, i);
       const auto of = [&](std::string_view function) { line("{} = {}({});", r, function, a); };
       switch (o.code) {
         case SeriesCode::product:
-          return line("{} = {} * {};", r, a, b);
+          return line("{} = {} * {};", product, a, b);
         case SeriesCode::square:
           return line("{} = {} * {};", r, a, a);
         case SeriesCode::quotient:
@@ -609,7 +611,7 @@ class SeriesWriter {
       const std::string middle = k % 2 == 1 ? "" : fmt::format(" + {} * {}", pair_at(a, k / 2), pair_at(a, k / 2));
       line("const two r = (2 * s{}) + 2 * {} * {};", middle, pair_at(a, 0), pair_at(a, k));
     }
-    line("w[{}] = r[0]; w[{}] = r[1];", k * row_ + result[0], k * row_ + result[1]);
+    line("{} = r[0]; {} = r[1];", at(order, result[0], ""), at(order, result[1], ""));
     if (const auto kept = pairs_.find(result); kept != pairs_.end()) {
       placed_.insert(result);
       line("q[{}] = r;", k * pairs_.size() + kept->second);

@@ -105,14 +105,16 @@ class SeriesCompiler {
         exponents_(written.exponents),
         nodes_(reachable(graph_, equations.derivatives)),
         level_(graph_.size(), 0),
-        place_(graph_.size(), nowhere) {}
+        place_(graph_.size(), nowhere) {
+    find_turned();
+  }
 
   void compile() {
     const Register time = program_.add_variable();
     const Register states = program_.add_variable(equations_.states_end - equations_.states_begin);
     std::map<std::size_t, std::vector<NodeId>> by_level;
     for (const NodeId id : nodes_) {
-      const Node& node = graph_[id];
+      const Node node = node_of(id);
       if (node.op == Op::variable && node.number == Layout::time) {
         set_moving(id, 1, time);
       } else if (node.op == Op::variable && is_state(node.number)) {
@@ -149,6 +151,32 @@ class SeriesCompiler {
   static constexpr std::size_t least_together = 4, least_part = 8;  // members
   static constexpr std::size_t most_to_split = 100'000;             // nodes
 
+  /// Finds the negated differences that are read as such alone: a graph writes b - a so where a stands before b. A
+  /// negation less stands between the coefficients of two orders, which wait for each other.
+  void find_turned() {
+    std::vector<std::uint32_t> uses(graph_.size(), 0);
+    for (const NodeId id : equations_.derivatives) ++uses[id.index];
+    for (const NodeId id : nodes_)
+      for (const NodeId argument : arguments(graph_[id])) ++uses[argument.index];
+    const auto is_turned = [&](const Node& node) {
+      return node.op == Op::negate && graph_[node.a].op == Op::subtract && uses[node.a.index] == 1;
+    };
+    std::vector<bool> vanishes(graph_.size(), false);
+    for (const NodeId id : nodes_) {
+      if (!is_turned(graph_[id])) continue;
+      turned_.emplace(id, graph_[id].a);
+      vanishes[graph_[id].a.index] = true;
+    }
+    std::erase_if(nodes_, [&](NodeId id) { return vanishes[id.index]; });
+  }
+  /// The operation that is written for a node: of a negated difference, that of the terms in the other order.
+  Node node_of(NodeId id) const {
+    const auto inner = turned_.find(id);
+    if (inner == turned_.end()) return graph_[id];
+    const Node& difference = graph_[inner->second];
+    return {.op = Op::subtract, .a = difference.b, .b = difference.a, .before = {}};
+  }
+
   bool is_state(std::uint32_t variable) const {
     return variable >= equations_.states_begin && variable < equations_.states_end;
   }
@@ -181,7 +209,7 @@ class SeriesCompiler {
   }
 
   Kind kind_of(NodeId id) const {
-    const Node& node = graph_[id];
+    const Node node = node_of(id);
     std::array<bool, 3> moving{};
     std::size_t k = 0;
     for (const NodeId argument : arguments(node)) moving[k++] = moves(argument);
@@ -213,7 +241,7 @@ class SeriesCompiler {
         for (const NodeId id : members) {
           family[id.index] = count;
           std::size_t k = 0;
-          for (const NodeId argument : arguments(graph_[id])) readers[argument.index].push_back(4 * id.index + k++);
+          for (const NodeId argument : arguments(node_of(id))) readers[argument.index].push_back(4 * id.index + k++);
         }
       }
     }
@@ -226,7 +254,7 @@ class SeriesCompiler {
     };
     const auto by_arguments = [&](NodeId id) {
       std::vector<std::size_t> sign;
-      for (const NodeId argument : arguments(graph_[id])) sign.push_back(family[argument.index]);
+      for (const NodeId argument : arguments(node_of(id))) sign.push_back(family[argument.index]);
       return sign;
     };
     for (auto level = levels.rbegin(); level != levels.rend(); ++level) split_level(*level, by_readers, family, count);
@@ -264,14 +292,14 @@ class SeriesCompiler {
   std::array<Register, 3> places_of(NodeId id) {
     std::array<Register, 3> places{};
     std::size_t k = 0;
-    for (const NodeId argument : arguments(graph_[id])) places[k++] = place_of(argument);
+    for (const NodeId argument : arguments(node_of(id))) places[k++] = place_of(argument);
     return places;
   }
 
   /// Members of one kind, with results side by side.
   void write(const Nodes& members) {
     std::array<std::vector<Register>, 3> lists;
-    const std::size_t count = arity(graph_[members.front()].op);
+    const std::size_t count = arity(node_of(members.front()).op);
     for (const NodeId id : members) {
       const std::array<Register, 3> places = places_of(id);
       for (std::size_t k = 0; k < count; ++k) lists[k].push_back(places[k]);
@@ -285,7 +313,7 @@ class SeriesCompiler {
 
   /// The argument k of all members side by side. Numbers are numbers again there, which no order has to copy.
   Register operand(const Nodes& members, std::size_t k, const std::vector<Register>& places) {
-    const auto argument = [&](NodeId id) { return arguments(graph_[id]).ids[k]; };
+    const auto argument = [&](NodeId id) { return arguments(node_of(id)).ids[k]; };
     if (members.size() == 1 || moves(argument(members.front()))) return side_by_side(places);
     const Register first = program_.add_number(0);
     for (std::size_t i = 1; i < members.size(); ++i) (void)program_.add_number(0);
@@ -318,7 +346,7 @@ class SeriesCompiler {
 
   Register operation(NodeId id, const std::array<Register, 3>& operand) {
     const auto [a, b, c] = operand;
-    const Node& node = graph_[id];
+    const Node node = node_of(id);
     switch (node.op) {
       case Op::add:
         if (!moves(node.a)) return add(SeriesCode::add_number, b, a);
@@ -468,8 +496,9 @@ class SeriesCompiler {
   SeriesProgram<double>& program_;
   std::span<const double> exponents_;
   Nodes nodes_;
-  std::vector<std::size_t> level_;  // by node; 0: it does not move
-  std::vector<Register> place_;     // by node
+  std::map<NodeId, NodeId> turned_;  // negations, and the differences that are written as one with them
+  std::vector<std::size_t> level_;   // by node; 0: it does not move
+  std::vector<Register> place_;      // by node
   std::map<std::vector<Register>, Register> copies_;
   std::map<std::tuple<SeriesCode, Register, std::uint32_t>, Register> pairs_;
   std::map<std::uint32_t, Register> numbers_of_tables_;
