@@ -19,10 +19,13 @@
 
 namespace continuo {
 
-/// Bounds of the motion of a body within a step: of the speed of its points, and of their acceleration.
-template <class Real>
+/// Bounds of the motion of a body within a step: of the speed of its points, and of their acceleration beyond a steady
+/// one, which for a body that falls is gravity; `sway` is what the centre alone has of that.
+template <class Real, int Dim>
 struct MotionBounds {
-  Real speed{}, acceleration{};
+  Real speed{};
+  Vector<Real, Dim> steady{};
+  Real acceleration{}, sway{};
 };
 
 template <class Real, int Dim>
@@ -64,7 +67,7 @@ class RigidFlight {
   [[nodiscard]] Real step_size() const { return integrator_->step_size(); }
   [[nodiscard]] System& system() { return *system_; }
   [[nodiscard]] const System& system() const { return *system_; }
-  [[nodiscard]] const MotionBounds<Real>& bounds(std::size_t k) const { return bounds_[k]; }
+  [[nodiscard]] const MotionBounds<Real, Dim>& bounds(std::size_t k) const { return bounds_[k]; }
 
   /// The state at a time of the present step; on the constraints at its end only.
   void at(const Real& t, X& x) {
@@ -144,13 +147,18 @@ class RigidFlight {
     for (std::size_t k = 0; k < system_->moving(); ++k) {
       body = system_->bodies()[k];
       const Real r = reach_[system_->numbers()[k]];
+      MotionBounds<Real, Dim>& bounds = bounds_[k];
+      for (std::size_t i = 0; i < Dim; ++i) {
+        const std::size_t v = k * System::stride + Dim + i;
+        bounds.steady[i] = (component(Real(1), v) - component(Real(0), v)) / size_;
+      }
       for (int sample = 0; sample < samples; ++sample) {
         const Real theta = static_cast<Real>(sample) / (samples - 1);
         body_at(k, begin_ + theta * size_, body);
         const Real spin = length(body.spin);
         Real pull(0), torque(0), least(0);
         for (std::size_t i = 0; i < Dim; ++i) {
-          const Real a = slope(theta, k * System::stride + Dim + i);
+          const Real a = slope(theta, k * System::stride + Dim + i) - bounds.steady[i];
           pull += a * a;
         }
         for (std::size_t i = 0; i < Spin<Real, Dim>::size(); ++i) {
@@ -162,9 +170,10 @@ class RigidFlight {
           for (std::size_t j = 0; j < Spin<Real, Dim>::size(); ++j)
             if (i != j) least += std::abs(body.inverse_inertia_now[i][j]);
         const Real turning_on = least * (std::sqrt(torque) + (Dim == 3 ? spin * length(body.momentum) : Real(0)));
-        bounds_[k].speed = std::max(bounds_[k].speed, Real(1.25) * (length(body.v) + spin * r));
-        bounds_[k].acceleration =
-            std::max(bounds_[k].acceleration, Real(1.25) * (std::sqrt(pull) + r * (turning_on + spin * spin)));
+        bounds.speed = std::max(bounds.speed, Real(1.25) * (length(body.v) + spin * r));
+        bounds.sway = std::max(bounds.sway, Real(1.25) * std::sqrt(pull));
+        bounds.acceleration =
+            std::max(bounds.acceleration, Real(1.25) * (std::sqrt(pull) + r * (turning_on + spin * spin)));
       }
     }
   }
@@ -173,7 +182,7 @@ class RigidFlight {
   std::optional<Integrator<SystemReference<System>, X, Dop853>> integrator_;
   Real begin_, size_{}, end_;
   std::span<const X> polynomials_;
-  std::vector<MotionBounds<Real>> bounds_;
+  std::vector<MotionBounds<Real, Dim>> bounds_;
   std::span<const Real> reach_;  // of all bodies of the world
 };
 

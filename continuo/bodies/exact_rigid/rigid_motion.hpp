@@ -26,6 +26,7 @@
 #include <continuo/bodies/exact_rigid/lasting_journal.hpp>
 #include <continuo/bodies/exact_rigid/near_parts.hpp>
 #include <continuo/bodies/exact_rigid/rigid_flight.hpp>
+#include <continuo/bodies/exact_rigid/safe_time.hpp>
 
 namespace continuo {
 
@@ -68,12 +69,13 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
  private:
   static constexpr Real never = std::numeric_limits<Real>::infinity();
   static constexpr Real rounding = std::numeric_limits<Real>::epsilon();
-  enum class What : std::uint8_t { step_ends, contact_changes, parts_meet, list_ends };
+  enum class What : std::uint8_t { step_ends, contact_changes, parts_near, parts_meet, list_ends };
   struct Next {
     Real t{};
     What what = What::step_ends;
     std::uint32_t index = 0;                 // of a group or a pair
     std::uint64_t stamp_a = 0, stamp_b = 0;  // of the bodies when it was foreseen
+    Real level{};                            // of parts: the gap at which they meet
     friend bool operator<(const Next& one, const Next& other) { return one.t > other.t; }  // the earliest on top
   };
   struct Group {
@@ -126,7 +128,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     take_kept();
     bodies_.push_back({});  // the world itself
     begin_ = bodies_, began_ = world_.time;
-    stamp_.assign(n + 1, 0), group_of_.assign(n + 1, nowhere), place_in_group_.assign(n + 1, 0);
+    meetings_.assign(n, {world_.time, 0}), seen_.assign(n + 1, {}), stamp_.assign(n + 1, 0),
+        group_of_.assign(n + 1, nowhere), place_in_group_.assign(n + 1, 0);
     is_whole_ = !world_.springs.empty() || world_.attraction.constant != Real(0) || world_.drag.linear != Real(0) ||
                 world_.drag.quadratic != Real(0) || !world_.force_laws.empty() || !world_.torque_laws.empty();
     for (const JointHandle handle : world_.joints()) {
@@ -214,6 +217,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     queue_.pop();
     if (is_outdated(what)) return {};
     now_ = std::max(now_, what.t);
+    if (what.what == What::parts_near) return look(what.index, what.level), Status{};
     if (++events_ > options_.most_events) return too_many_events();
     if (options_.is_interrupted()) return interrupted();
     switch (what.what) {
@@ -226,6 +230,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       case What::list_ends:
         list_anew();
         break;
+      case What::parts_near:
+        break;
     }
     return {};
   }
@@ -234,6 +240,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       case What::step_ends:
       case What::contact_changes:
         return !groups_[what.index].flight || stamp_[movers_of(what.index).front()] != what.stamp_a;
+      case What::parts_near:
       case What::parts_meet: {
         const auto [a, b] = bodies_of(near_.pairs()[what.index]);
         return stamp_[a] != what.stamp_a || stamp_[b] != what.stamp_b;
@@ -249,9 +256,23 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   }
   [[nodiscard]] Status meet(const NearPair& pair) {
     std::vector<std::uint32_t> seeds;
-    for (const std::uint32_t i : bodies_of(pair))
-      if (!bodies_[i].is_fixed()) seeds.push_back(i);
+    for (const std::uint32_t i : bodies_of(pair)) {
+      if (bodies_[i].is_fixed()) continue;
+      if (Status fault = check_progress(i); !fault) return fault;
+      seeds.push_back(i);
+    }
     return resolve(seeds);
+  }
+  /// An error where a body meets others again and again and time does not go on: without it a wrong foresight, or
+  /// impacts of bodies jammed between others, would be a call that never ends.
+  [[nodiscard]] Status check_progress(std::uint32_t i) {
+    constexpr std::size_t most_meetings = 10'000;
+    Meetings& meetings = meetings_[i];
+    if (!(now_ - meetings.since <= contact_time_)) meetings = {now_, 0};
+    if (++meetings.count <= most_meetings) return {};
+    return cannot_continue("body " + std::to_string(i) + " meets others " + std::to_string(most_meetings) +
+                           " times within a contact time, at t = " + std::to_string(now_) +
+                           ": it is jammed between them");
   }
 
   // Flights.
@@ -285,8 +306,14 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     }
     return {};
   }
-  /// Body i at a time of its present step.
-  [[nodiscard]] Body body_at(std::uint32_t i, const Real& t) const {
+  /// Body i at a time of its present step. It is kept for all that asks for the same instant.
+  [[nodiscard]] const Body& body_at(std::uint32_t i, const Real& t) const {
+    Seen& seen = seen_[i];
+    if (seen.stamp == stamp_[i] && seen.t == t && group_of_[i] != nowhere) return seen.body;
+    seen = {find_body(i, t), t, stamp_[i]};
+    return seen.body;
+  }
+  [[nodiscard]] Body find_body(std::uint32_t i, const Real& t) const {
     Body body = bodies_[i];
     if (group_of_[i] != nowhere) {
       const Flight& flight = *groups_[group_of_[i]].flight;
@@ -308,9 +335,15 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   [[nodiscard]] Real end_of(std::uint32_t i) const {
     return group_of_[i] == nowhere ? until_ : groups_[group_of_[i]].flight->end();
   }
-  [[nodiscard]] Real acceleration_of(std::uint32_t i) const {
-    if (group_of_[i] != nowhere) return groups_[group_of_[i]].flight->bounds(place_in_group_[i]).acceleration;
-    return i < world_.size() ? squared(begin_[i].spin) * world_.radius[i] : Real(0);
+  [[nodiscard]] MotionBounds<Real, Dim> bounds_of_motion(std::uint32_t i) const {
+    if (group_of_[i] != nowhere) return groups_[group_of_[i]].flight->bounds(place_in_group_[i]);
+    MotionBounds<Real, Dim> of_driven;
+    if (i < world_.size()) of_driven.acceleration = squared(begin_[i].spin) * world_.radius[i];
+    return of_driven;
+  }
+  [[nodiscard]] MutualMotion<Real, Dim> mutual_motion(std::uint32_t i, std::uint32_t j) const {
+    const MotionBounds<Real, Dim> a = bounds_of_motion(i), b = bounds_of_motion(j);
+    return {b.steady - a.steady, a.acceleration + b.acceleration, a.sway + b.sway};
   }
 
   // Meetings.
@@ -331,28 +364,57 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   [[nodiscard]] Real band_of(const Body& b, const Part& part) const {
     return 1000 * rounding * (length(b.x) + part.convex->reach);
   }
-  /// Finds when the parts meet next, within the present steps of both.
+  /// Begins to look when the parts meet next, within the present steps of both.
   void foresee(std::uint32_t p) {
     const NearPair& pair = near_.pairs()[p];
     const auto [i, j] = bodies_of(pair);
     if (group_of_[j] != nowhere && is_watched(groups_[group_of_[j]], pair)) return;
     if (group_of_[i] != nowhere && is_watched(groups_[group_of_[i]], pair)) return;
     const auto [a, b] = parts_of(pair);
-    const Real to = std::min({end_of(i), end_of(j), until_}), most = acceleration_of(i) + acceleration_of(j);
-    Real t = now_, level(0);
-    for (bool is_first = true;; is_first = false) {
-      const Body body_a = body_at(i, t), body_b = body_at(j, t);
+    const Body &body_a = body_at(i, now_), &body_b = body_at(j, now_);
+    const Real band = band_of(body_b, b);
+    if (are_far(a, body_a, b, body_b, band, std::min({end_of(i), end_of(j), until_}) - now_)) return;
+    const Real gap = separation_of(a, body_a, b, body_b).gap;
+    look(p, gap > band ? Real(0) : std::min(gap, Real(0)) - band);
+  }
+  /// Whether a glance at the balls around two bodies tells that their gap stays above a level for a time.
+  [[nodiscard]] bool are_far(const Part& a, const Body& body_a, const Part& b, const Body& body_b, const Real& level,
+                             const Real& duration) const {
+    const MutualMotion<Real, Dim> motion = mutual_motion(a.body, b.body);
+    if (a.is_wall())
+      return balls_stay_apart(a.wall_normal, Real(dot(a.wall_normal, body_b.x) - a.wall_offset),
+                              dot(a.wall_normal, body_b.v), motion, world_.radius[b.body], level, duration);
+    const V between = body_b.x - body_a.x;
+    const Real distance = length(between);
+    if (!(distance > Real(0))) return false;
+    const V normal = between * (1 / distance);
+    return balls_stay_apart(normal, distance, Real(dot(normal, body_b.v - body_a.v)), motion,
+                            Real(world_.radius[a.body] + world_.radius[b.body]), level, duration);
+  }
+  /// Follows the parts from now on by two steps that cannot pass the instant at which their gap falls to `level`. Where
+  /// that does not lead to it, it goes on when that time has come: most of what is foreseen never happens, because one
+  /// of the two meets another before.
+  void look(std::uint32_t p, const Real& level) {
+    const NearPair& pair = near_.pairs()[p];
+    const auto [i, j] = bodies_of(pair);
+    const auto [a, b] = parts_of(pair);
+    const Real to = std::min({end_of(i), end_of(j), until_});
+    const MutualMotion<Real, Dim> motion = mutual_motion(i, j);
+    Next next{now_, What::parts_near, p, stamp_[i], stamp_[j], level};
+    for (int round = 0; round < 2; ++round) {
+      const Body &body_a = body_at(i, next.t), &body_b = body_at(j, next.t);
       const Separation<Real, Dim> apart = separation_of(a, body_a, b, body_b);
-      const Real band = band_of(body_b, b);
-      if (is_first) level = apart.gap > band ? Real(0) : std::min(apart.gap, Real(0)) - band;
-      const Real longest = to - t;
+      const Real longest = to - next.t;
       if (!(longest > Real(0))) return;
-      const Real safe = safe_time(a, body_a, b, body_b, apart.normal, level, most, longest);
+      const Real safe = safe_time(a, body_a, b, body_b, apart.normal, level, motion, longest);
       if (safe >= longest) return;
-      if (safe <= 4 * rounding * std::abs(t) || apart.gap - level <= band / 250) break;
-      t += safe;
+      if (safe <= 4 * rounding * std::abs(next.t) || apart.gap - level <= band_of(body_b, b) / 250) {
+        next.what = What::parts_meet;
+        break;
+      }
+      next.t += safe;
     }
-    queue_.push({t, What::parts_meet, p, stamp_[i], stamp_[j]});
+    queue_.push(next);
   }
   [[nodiscard]] static bool is_watched(const Group& group, const NearPair& pair) {
     return std::ranges::binary_search(group.watched, pair);
@@ -507,7 +569,9 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   }
   [[nodiscard]] bool touches(const NearPair& pair) const {
     const auto [a, b] = parts_of(pair);
-    return separation_of(a, body_at(a.body, now_), b, body_at(b.body, now_)).gap <= touching_gap(b);
+    const Body &body_a = body_at(a.body, now_), &body_b = body_at(b.body, now_);
+    return !are_far(a, body_a, b, body_b, touching_gap(b), Real(0)) &&
+           separation_of(a, body_a, b, body_b).gap <= touching_gap(b);
   }
   [[nodiscard]] static Real touching_gap(const Part& part) { return std::sqrt(rounding) / 100 * part.convex->reach; }
 
@@ -734,6 +798,17 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   NearParts<Real, Dim> near_;
   std::vector<std::uint64_t> stamp_;  // of bodies: changes where what was foreseen for a body is no longer valid
   std::uint64_t foreseen_ = 0;
+  struct Seen {
+    Body body{};
+    Real t = never;
+    std::uint64_t stamp = 0;
+  };
+  struct Meetings {
+    Real since{};
+    std::size_t count = 0;
+  };
+  std::vector<Meetings> meetings_;  // of bodies, within a contact time
+  mutable std::vector<Seen> seen_;  // of bodies in flight, at the time for which each was looked for last
   std::vector<std::uint32_t> group_of_, place_in_group_;
   std::vector<Group> groups_;
   std::vector<std::uint32_t> free_groups_;
