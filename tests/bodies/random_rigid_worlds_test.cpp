@@ -191,6 +191,32 @@ TEST(RandomRigidWorlds, ACrowdAtOnePoint) {
   EXPECT_EQ(hashes_of(world, motion, 2).size(), 2u);
 }
 
+// More than that have no room in memory. As soon as they are apart, the motion goes on.
+template <class Shape, int Dim>
+void expect_crowd_is_refused(const Shape& shape) {
+  World<double, Dim> world;
+  for (int i = 0; i < 1500; ++i) ASSERT_TRUE(world.add({.shape = shape}));
+  FastMotion<double, Dim> motion(world);
+  for (int round = 0; round < 2; ++round) {
+    const Status status = motion.advance();
+    EXPECT_EQ(status.ending, Ending::invalid_input);
+    EXPECT_NE(status.message.find("too many lie in each other"), std::string::npos) << status.message;
+    EXPECT_EQ(world.time, 0);
+  }
+  if (world.solid(0) != nullptr) {
+    ExactMotion<double, Dim> exact(world);
+    EXPECT_NE(exact.advance_to(1).message.find("too many lie in each other"), std::string::npos);
+  }
+  for (std::size_t i = 0; i < world.size(); ++i) world.position[i][0] = 3.0 * static_cast<double>(i);
+  EXPECT_TRUE(motion.advance());
+}
+TEST(RandomRigidWorlds, ACrowdThatIsTooLargeIsRefused) {
+  expect_crowd_is_refused<Box<double, 2>, 2>({});
+  expect_crowd_is_refused<Box<double, 3>, 3>({});
+  expect_crowd_is_refused<Sphere<double>, 2>({0.5});
+  expect_crowd_is_refused<Sphere<double>, 3>({0.5});
+}
+
 // What a body sleeps on is not turned by what it did before, and a run that goes on from a snapshot lets it sleep.
 TEST(RandomRigidWorlds, SleepersKeepTheirPlace) {
   World<double, 3> world;

@@ -15,6 +15,7 @@
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
 #include <continuo/bodies/exact_rigid/separation.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_pairs.hpp>
+#include <continuo/bodies/support/crowd.hpp>
 
 namespace continuo {
 
@@ -59,6 +60,9 @@ class NearParts {
   /// The numbers of the pairs of a body.
   [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t body) const { return pairs_of_[body]; }
 
+  /// An error where there are too many pairs, of which the list has one more than there may be.
+  [[nodiscard]] Status check_number() const { return check_crowd(pairs_.size(), parts_.size()); }
+
   /// Lists the pairs anew. Rooms let the bodies move by about half of their size.
   void list(const World<Real, Dim>& world, std::span<const Body> bodies, const Real& now) {
     const std::size_t n = bodies.size();
@@ -74,9 +78,10 @@ class NearParts {
     for (const auto& part : parts_)
       rooms_.push_back(grown(bounds_of(*part.convex, part.pose(bodies[part.body])), room_[part.body]));
     tree_.build(rooms_);
+    const std::size_t most = most_near_pairs(parts_.size());
     tree_.for_each_pair([&](std::uint32_t i, std::uint32_t j) {
       const std::uint32_t a = parts_[i].body, b = parts_[j].body;
-      if (a != b && world.collide(a, b) &&
+      if (pairs_.size() <= most && a != b && world.collide(a, b) &&
           !std::ranges::binary_search(apart_, std::pair(std::min(a, b), std::max(a, b))))
         pairs_.push_back({.a = i, .b = j});
     });

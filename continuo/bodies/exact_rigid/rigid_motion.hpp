@@ -158,13 +158,14 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   /// All that moves begins at once: what touches or is joined, in groups.
   [[nodiscard]] Status begin() {
     list_pairs();
+    if (Status fault = near_.check_number(); !fault) return fault;
     if (Status fault = check_overlaps(); !fault) return fault;
     std::vector<std::uint32_t> all;
     for (std::uint32_t i = 0; i < world_.size(); ++i)
       if (!bodies_[i].is_fixed()) all.push_back(i);
     if (Status fault = resolve(all); !fault) return fault;
     list_anew();
-    return {};
+    return near_.check_number();
   }
   [[nodiscard]] Status check_overlaps() const {
     for (const NearPair& pair : near_.pairs()) {
@@ -229,7 +230,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
         return meet(near_.pairs()[what.index]);
       case What::list_ends:
         list_anew();
-        break;
+        return near_.check_number();
       case What::parts_near:
         break;
     }

@@ -14,6 +14,7 @@
 #include <continuo/bodies/bounds/convex_bounds.hpp>
 #include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
+#include <continuo/bodies/support/crowd.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/shapes/box_manifold.hpp>
@@ -95,6 +96,8 @@ class RigidPairs {
            rooms_.capacity() * sizeof(rooms_[0]) + balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
   }
 
+  /// An error where there are too many pairs, of which the last update has listed one more than there may be.
+  [[nodiscard]] Status check_number() const { return check_crowd(pairs_.size(), parts_.size()); }
   /// Brings the pairs up to date, where `collide(i, j)` tells whether bodies i and j may. Returns whether parts had
   /// left their rooms.
   template <class Collide>
@@ -104,8 +107,9 @@ class RigidPairs {
     if (moved_.empty()) return false;
     tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
     is_new_ = false;
+    const std::size_t most = most_near_pairs(parts_.size());
     const auto may_touch = [&](std::uint32_t i, std::uint32_t j) {
-      return parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
+      return pairs_.size() <= most && parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
     };
     if (moved_.size() * 4 > parts_.size()) {
       pairs_.clear();

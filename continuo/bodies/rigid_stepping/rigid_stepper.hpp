@@ -87,7 +87,7 @@ class RigidStepper {
   [[nodiscard]] Status step() {
     if (Status fault = check_world(); !fault) return fault;
     load();
-    find_contacts();
+    if (Status fault = find_contacts(); !fault) return fault;
     gather_blocks();
     islands_.find(bodies_.size(), rows_.blocks, [this](std::uint32_t i) { return moves(i); });
     choose_solvers();
@@ -202,7 +202,7 @@ class RigidStepper {
     body.update_axes();
   }
 
-  void find_contacts() {
+  [[nodiscard]] Status find_contacts() {
     const auto collide = [this](std::uint32_t i, std::uint32_t j) {
       return world_.collide(i, j) && (!world_.may_collide || world_.may_collide(world_, i, j)) &&
              (apart_.empty() || !std::ranges::binary_search(apart_, std::pair(std::min(i, j), std::max(i, j))));
@@ -210,9 +210,13 @@ class RigidStepper {
     for (;;) {
       const bool are_others = pairs_.update(team_, world_, bodies_, options_.step, collide);
       statistics.lists += are_others ? 1 : 0;
+      if (Status fault = pairs_.check_number(); !fault) {
+        is_stale_ = true;
+        return fault;
+      }
       const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
       contacts_.find(team_, world_, pairs_, are_others, bodies_, options_.step, is_active);
-      if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return;
+      if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return {};
       load_bodies();
     }
   }

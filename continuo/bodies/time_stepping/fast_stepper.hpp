@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/support/crowd.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/time_stepping/body_transfer.hpp>
 #include <continuo/bodies/time_stepping/contact_passes.hpp>
@@ -132,6 +133,7 @@ class FastMotion<Real, Dim>::Stepper {
     if (!is_other_at_rest_ && sleep_.is_all_asleep()) return rest();
     load();
     list_pairs();
+    if (Status status = check_crowd(contacts_.rows.entries.size(), bodies_.size()); !status) return status;
     choose_contacts();
     if (!integrate())
       return {.ending = Ending::nonlinear_solve_failed,
