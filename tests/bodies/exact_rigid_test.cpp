@@ -574,6 +574,25 @@ TEST(ExactRigid, AStackStands) {
   advance(in_space, 1);
   EXPECT_NEAR(world.position[2][2], 2.5, 1e-12);
 }
+// Groups that have become one leave the places of the others free, which the next call must not take for its own.
+TEST(ExactRigid, GoesOnInFurtherCallsAfterBodiesHaveComeTogether) {
+  World2 world;
+  world.gravity = {{0, -10}};
+  require(world.add_wall({.material = smooth}));
+  for (int i = 0; i < 3; ++i)
+    require(world.add({.shape = Box<double, 2>{{{4, 1}}},
+                       .position = {{0, 0.5 + 1.2 * i}},
+                       .velocity = {{0.2 * i, 0}},
+                       .material = smooth}));
+  ExactMotion motion(world);
+  for (int k = 1; k <= 12; ++k) {
+    advance(motion, 0.25 * k);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(world.position[i][0], 0.2 * static_cast<double>(i) * world.time, 1e-9) << k;
+    EXPECT_LT(overlap_of_boxes(world), 1e-9) << k;
+  }
+  EXPECT_NEAR(world.position[2][1], 2.5, 1e-9);
+}
 
 // Options and errors.
 

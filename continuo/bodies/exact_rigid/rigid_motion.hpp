@@ -123,7 +123,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   }
   void load() {
     const std::size_t n = world_.size();
-    bodies_.clear(), joints_.clear(), groups_.clear(), queue_ = {};
+    bodies_.clear(), joints_.clear(), groups_.clear(), free_groups_.clear(), queue_ = {};
     for (std::size_t i = 0; i < n; ++i) bodies_.push_back(exact_body(world_, i));
     take_kept();
     bodies_.push_back({});  // the world itself
