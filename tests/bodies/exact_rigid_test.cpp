@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -554,6 +555,51 @@ TEST(ExactRigid, PainlevesRodIsNotMovedWrongly) {
   EXPECT_EQ(status.ending, Ending::cannot_continue);
   EXPECT_THAT(status.message, testing::HasSubstr("Painleve"));
   EXPECT_EQ(world.time, 0);
+}
+// F. Genot, B. Brogliato, "New results on Painleve paradoxes", European Journal of Mechanics A 18, 1999, 653-677: near
+// the configurations where forces cease to belong together, those with `share` below 0, a sliding rod moves as its
+// reduced equation says, until it comes off or sticks; afterwards it has no energy from nowhere, or does not move.
+TEST(ExactRigid, ARodNearPainlevesParadoxTurnsByItsReducedEquation) {
+  constexpr double friction = 2, radius = 0.02, g = 9.81, start = 1.5;
+  for (const double spin : {-0.5, -1.0, -2.0}) {
+    World2 world;
+    world.gravity = {{0, -g}};
+    require(world.add_wall({.offset = -radius, .material = {.friction = friction}}));
+    require(world.add({.shape = Capsule<double>{2, radius},
+                       .position = {{std::cos(start), std::sin(start)}},
+                       .velocity = {{-4 - spin * std::sin(start), spin * std::cos(start)}},
+                       .orientation = {{start - pi / 2}},
+                       .spin = {{spin}},
+                       .mass = 1,
+                       .material = {.friction = friction}}));
+    const double inertia = world.inertia(0)[0][0];
+    const auto lever = [&](double q) { return (-std::cos(q) + friction * (std::sin(q) + radius)) / inertia; };
+    const auto share = [&](double q) { return 1 - std::cos(q) * lever(q); };
+    const auto force = [&](double q, double w) { return (g - std::sin(q) * w * w) / share(q); };
+    ExactMotion motion(world, {.tolerance = 1e-12});
+    double q = start, w = spin, before = energy(world);
+    int compared = 0;
+    for (int k = 1; k <= 100; ++k) {
+      const Status status = motion.advance_to(0.004 * k);
+      EXPECT_LT(energy(world), before + 1e-9) << spin;
+      before = energy(world);
+      const double slip = world.velocity[0][0] + w * (std::sin(q) + radius);
+      std::tie(q, w) =
+          std::tuple_cat(integrated(q, w, 0.004, [&](double p, double v) { return lever(p) * force(p, v); }));
+      if (!(share(q) > 0.05 && force(q, w) > 0.1 && slip < -0.5)) {
+        EXPECT_TRUE(status || status.message.find("Painleve") != std::string::npos) << status.message;
+        break;
+      }
+      ASSERT_TRUE(status) << describe(status);
+      EXPECT_NEAR(world.orientation[0][0] + pi / 2, q, 1e-9) << spin << ' ' << k;
+      EXPECT_NEAR(world.spin[0][0], w, 1e-8);
+      ++compared;
+    }
+    EXPECT_GT(compared, 3) << spin;
+    const Status status = motion.advance_to(world.time + 0.3);
+    EXPECT_TRUE(status || status.message.find("Painleve") != std::string::npos) << status.message;
+    EXPECT_LT(energy(world), before + 1e-9) << spin;
+  }
 }
 TEST(ExactRigid, AStackStands) {
   World2 flat;
