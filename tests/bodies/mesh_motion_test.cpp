@@ -120,6 +120,29 @@ TEST(MeshMotion, NoBulletPassesASheet) {
   expect_no_bullet_passes<2>(60);
   expect_no_bullet_passes<3>(30);
 }
+// Beside small bodies triangles of 400 m leave few digits of single precision.
+TEST(MeshMotion, NoBoxPassesTrianglesOfHundredsOfMetres) {
+  std::mt19937 engine(1);
+  const auto number = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); };
+  for (int shot = 0; shot < 200; ++shot) {
+    World<float, 3> world;
+    world.gravity[2] = -9.81f;
+    TriangleMesh<float> mesh{.corners = {{{-400, -400, 0}}, {{400, -390, 0}}, {{380, 400, 0}}, {{-400, 410, 0}}},
+                             .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    ASSERT_TRUE(world.add_mesh({.shape = mesh}));
+    const float size = std::pow(10.0f, number(-1.7f, 0)), speed = std::pow(10.0f, number(0, 1));
+    const Box<float, 3> box{{{size, size * number(0.3f, 1), size * number(0.1f, 1)}}};
+    ASSERT_TRUE(world.add({.shape = box,
+                           .position = {{number(-300, 300), number(-300, 300), size + number(0, 2)}},
+                           .velocity = {{number(-1, 1) * speed, number(-1, 1) * speed, -speed}},
+                           .spin = {{number(-20, 20), number(-20, 20), number(-20, 20)}}}));
+    FastMotion<float, 3> motion(world);
+    for (int k = 0; k < 60; ++k) {
+      ASSERT_TRUE(motion.advance());
+      ASSERT_GT(world.position[0][2], 0) << "shot " << shot << ", step " << k;
+    }
+  }
+}
 TEST(MeshMotion, TheBackOfAOneSidedMeshIsOpen) {
   World<double, 3> world;
   ASSERT_TRUE(world.add_mesh({.shape = sheet<3>(false)}));
