@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,15 +30,13 @@ class BlockPattern {
   /// `most_updates` products of blocks.
   [[nodiscard]] bool analyse(std::size_t size, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
                              std::size_t most_updates) {
+    find_near(size, edges);
+    if (!needs_at_most(most_updates, size, near_.size() / 2)) return false;
     std::vector<std::vector<std::uint32_t>> near(size);
-    for (const auto& [a, b] : edges) near[a].push_back(b), near[b].push_back(a);
-    std::size_t ends = 0;
-    for (auto& row : near) {
-      std::ranges::sort(row);
-      row.erase(std::unique(row.begin(), row.end()), row.end());
-      ends += row.size();
-    }
-    return needs_at_most(most_updates, size, ends / 2) && eliminate(near, most_updates);
+    for (std::size_t i = 0; i < size; ++i)
+      near[i].assign(near_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
+                     near_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]));
+    return eliminate(near, most_updates);
   }
 
   [[nodiscard]] std::size_t size() const { return order_.size(); }
@@ -54,6 +54,26 @@ class BlockPattern {
   }
 
  private:
+  /// The neighbours of each body, in one list, since most dense graphs are rejected by their number.
+  void find_near(std::size_t size, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
+    first_.assign(size + 1, 0);
+    for (const auto& [a, b] : edges) ++first_[a + 1], ++first_[b + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    near_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (const auto& [a, b] : edges) near_[next[a]++] = b, near_[next[b]++] = a;
+    const auto begin = near_.begin();
+    auto end = begin;
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto of_i = begin + static_cast<std::ptrdiff_t>(first_[i]),
+                 last = begin + static_cast<std::ptrdiff_t>(next[i]);
+      first_[i] = static_cast<std::size_t>(end - begin);
+      std::sort(of_i, last);
+      end = std::copy(of_i, std::unique(of_i, last), end);
+    }
+    first_[size] = static_cast<std::size_t>(end - begin);
+    near_.erase(end, near_.end());
+  }
   /// False where no order of elimination can do: the columns of L have at least as many blocks as there are edges, and
   /// d of them need d (d + 1) / 2 products, of which the sum is least where all columns have the same number.
   [[nodiscard]] static bool needs_at_most(std::size_t most_updates, std::size_t size, std::size_t edges) {
@@ -112,6 +132,8 @@ class BlockPattern {
 
   static constexpr std::uint32_t not_placed = 0xffffffff;
   std::vector<std::uint32_t> place_, order_;
+  std::vector<std::uint32_t> near_;  // the neighbours of one body after those of the other
+  std::vector<std::size_t> first_;   // of each body there
   std::vector<Entry> entries_;
   std::vector<std::size_t> begin_;
 };
