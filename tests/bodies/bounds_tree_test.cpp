@@ -60,7 +60,7 @@ std::vector<Bounds<Real, Dim>> random_set(std::mt19937& engine, Kind kind, std::
 template <class Real, int Dim>
 void expect_right(const BoundsTree<Real, Dim>& tree, const std::vector<Bounds<Real, Dim>>& set,
                   const Bounds<Real, Dim>& sought) {
-  Pairs expected, found;
+  Pairs expected, found, found_in_parts;
   std::vector<std::uint32_t> expected_leaves, found_leaves;
   for (std::uint32_t i = 0; i < set.size(); ++i) {
     for (std::uint32_t j = i + 1; j < set.size(); ++j)
@@ -69,9 +69,13 @@ void expect_right(const BoundsTree<Real, Dim>& tree, const std::vector<Bounds<Re
   }
   tree.for_each_pair([&](std::uint32_t i, std::uint32_t j) { found.emplace_back(i, j); });
   tree.for_each_overlap(sought, [&](std::uint32_t i) { found_leaves.push_back(i); });
+  for (const auto search : tree.pair_searches(9))
+    tree.for_each_pair_of(search, [&](std::uint32_t i, std::uint32_t j) { found_in_parts.emplace_back(i, j); });
   std::ranges::sort(found);
+  std::ranges::sort(found_in_parts);
   std::ranges::sort(found_leaves);
   EXPECT_EQ(found, expected);
+  EXPECT_EQ(found_in_parts, expected);
   EXPECT_EQ(found_leaves, expected_leaves);
 }
 template <class Real, int Dim>
@@ -238,6 +242,7 @@ TEST(BoundsTree, NoSetIsTooDeep) {
   same.resize(300);
   BoundsTree<double, 2>(same).for_each_pair(count);
   EXPECT_EQ(found, 300u * 299 / 2);
+  EXPECT_GE((BoundsTree<double, 2>(same).pair_searches(50).size()), 50u);
 }
 
 TEST(BoundsTree, AnotherTreePaysWhereNeighboursHaveParted) {

@@ -70,6 +70,15 @@ class BoundsTree {
   /// Calls visit(i, j) with i < j for all pairs of leaves that overlap, each once.
   template <class Visit>
   void for_each_pair(Visit&& visit) const;
+  /// Two nodes, by their numbers.
+  struct NodePair {
+    std::uint32_t a = 0, b = 0;
+  };
+  /// Divides the search for all pairs into at least so many parts, where there are as many, which may be done at once.
+  [[nodiscard]] std::vector<NodePair> pair_searches(std::size_t parts) const;
+  /// Does one of them: calls visit(i, j) with i < j.
+  template <class Visit>
+  void for_each_pair_of(NodePair search, Visit&& visit) const;
   /// Calls visit(i, j) for all leaves i of this tree that overlap leaf j of the other, each pair once.
   template <class Visit>
   void for_each_pair_with(const BoundsTree& other, Visit&& visit) const;
@@ -94,9 +103,6 @@ class BoundsTree {
     std::uint32_t leaf = inner;  // its number
     [[nodiscard]] bool is_leaf() const { return leaf != inner; }
   };
-  struct NodePair {
-    std::uint32_t a, b;
-  };
   // A search that replaces an entry of the stack by k others needs at most k - 1 more of them for each level.
   using NodeStack = std::array<std::uint32_t, deepest + 2>;
   using PairStack = std::array<NodePair, 3 * deepest + 2>;
@@ -115,6 +121,8 @@ class BoundsTree {
   /// Puts the pairs of children of two nodes that meet on the stack.
   static void descend(const std::vector<Node>& first, const std::vector<Node>& second, NodePair pair, PairStack& stack,
                       std::size_t& count);
+  /// Puts the pairs of a search of pairs of this tree that follow one on the stack.
+  void open(NodePair pair, PairStack& stack, std::size_t& count) const;
   void fit_inner_nodes();
 
   std::vector<Node> nodes_;
@@ -240,27 +248,59 @@ void BoundsTree<Real, Dim>::descend(const std::vector<Node>& first, const std::v
 }
 
 template <class Real, int Dim>
+void BoundsTree<Real, Dim>::open(NodePair pair, PairStack& stack, std::size_t& count) const {
+  const Node& a = nodes_[pair.a];
+  if (pair.a != pair.b) return descend(nodes_, nodes_, pair, stack, count);
+  if (a.is_leaf()) return;
+  const std::uint32_t left = a.children, right = left + 1;
+  stack[count] = {left, right};
+  count += meet(nodes_[left], nodes_[right]);
+  stack[count++] = {right, right};
+  stack[count++] = {left, left};
+}
+
+template <class Real, int Dim>
 template <class Visit>
 void BoundsTree<Real, Dim>::for_each_pair(Visit&& visit) const {
-  if (nodes_.empty()) return;
+  if (!nodes_.empty()) for_each_pair_of({0, 0}, visit);
+}
+
+template <class Real, int Dim>
+auto BoundsTree<Real, Dim>::pair_searches(std::size_t parts) const -> std::vector<NodePair> {
+  std::vector<NodePair> searches, opened;
+  if (!nodes_.empty()) searches.push_back({0, 0});
+  // Level by level, until no pair of a level can be divided.
+  for (std::size_t before = 0; searches.size() < parts && !searches.empty() && before != searches.size();) {
+    before = searches.size();
+    opened.clear();
+    for (const NodePair pair : searches) {
+      if (pair.a != pair.b && nodes_[pair.a].is_leaf() && nodes_[pair.b].is_leaf()) {
+        opened.push_back(pair);
+        continue;
+      }
+      PairStack stack;
+      std::size_t count = 0;
+      open(pair, stack, count);
+      opened.insert(opened.end(), stack.begin(), stack.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    searches.swap(opened);
+  }
+  return searches;
+}
+
+template <class Real, int Dim>
+template <class Visit>
+void BoundsTree<Real, Dim>::for_each_pair_of(NodePair search, Visit&& visit) const {
   PairStack stack;
   std::size_t count = 0;
-  stack[count++] = {0, 0};
+  stack[count++] = search;
   while (count > 0) {
     const NodePair pair = stack[--count];
     const Node &a = nodes_[pair.a], &b = nodes_[pair.b];
-    if (pair.a != pair.b) {
-      if (a.is_leaf() && b.is_leaf())
-        visit(std::min(a.leaf, b.leaf), std::max(a.leaf, b.leaf));
-      else
-        descend(nodes_, nodes_, pair, stack, count);
-    } else if (!a.is_leaf()) {
-      const std::uint32_t left = a.children, right = left + 1;
-      stack[count] = {left, right};
-      count += meet(nodes_[left], nodes_[right]);
-      stack[count++] = {right, right};
-      stack[count++] = {left, left};
-    }
+    if (pair.a != pair.b && a.is_leaf() && b.is_leaf())
+      visit(std::min(a.leaf, b.leaf), std::max(a.leaf, b.leaf));
+    else
+      open(pair, stack, count);
   }
 }
 
