@@ -60,7 +60,7 @@ struct Stop {
 template <class Real, int Dim>
 class StoppingTimes {
  public:
-  StoppingTimes(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+  StoppingTimes(ThreadTeam& team, const World<Real, Dim>& world, RigidPairs<Real, Dim>& pairs,
                 std::span<const PartContact<Real, Dim>> contacts, const Real& step,
                 std::span<const RigidBody<Real, Dim>> bodies)
       : world_(world),
@@ -73,32 +73,33 @@ class StoppingTimes {
     team.for_each(0, is_fast_.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
     });
-    for (std::uint32_t i = 0; i < is_fast_.size(); ++i)
-      if (is_fast_[i]) fast_.push_back(i), swept_.push_back(swept_by(pairs.parts()[i]));
-    if (!fast_.empty()) tree_of_fast_.build(swept_);
+    for (std::uint32_t i = 0; i < is_fast_.size(); ++i) {
+      if (!is_fast_[i]) continue;
+      if (can_pass_movers(pairs.parts()[i])) passing_.push_back(static_cast<std::uint32_t>(fast_.size()));
+      fast_.push_back(i);
+    }
+    if (!fast_.empty()) pairs.find_still(bodies);
+    if (may_stop()) find_near(team);
   }
 
   [[nodiscard]] const std::vector<Stop<Real>>& stops() const { return stops_; }
-  [[nodiscard]] bool has_fast() const { return !fast_.empty(); }
+  /// Whether a part might pass through something.
+  [[nodiscard]] bool may_stop() const {
+    const bool has_still = !pairs_.still().empty() || !world_.walls().empty() || !world_.meshes().empty();
+    return !fast_.empty() && (!passing_.empty() || has_still);
+  }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
     return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())] != 0;
   }
-  /// Stops at the first contact of a part with what it does not touch yet.
-  void find_first_contact(const RigidPart<Real, Dim>& part) {
-    const RigidBody<Real, Dim>& body = bodies_[part.body];
-    const MovingBody<Real, Dim> moving = motion_of(part, body, step_);
-    for (const std::uint32_t j : parts_near(part)) {
-      const RigidPart<Real, Dim>& other = pairs_.parts()[j];
-      if (!world_.collide(part.body, other.body)) continue;
-      if (world_.traits(other.body).is_sensor || has_contact(part, other)) continue;
-      const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
-                                         part.inner_radius / 100);
-      if (contact && contact->time > Real(0)) stop(part.body, contact->time, other.body);
+  /// Stops fast parts at their first contacts with what they do not touch yet.
+  void find_first_contacts() {
+    auto near = near_.begin();
+    for (const std::uint32_t i : fast_) {
+      const auto first = near;
+      while (near != near_.end() && near->a == i) ++near;
+      find_first_contact(pairs_.parts()[i], {first, near});
     }
-    for (const WorldMesh<Real, Dim>& mesh : world_.meshes())
-      if (mesh.collides(world_.traits(part.body)))
-        stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, stops_[part.body].time, step_));
   }
   /// Stops where a contact of the beginning of the step becomes deep: the body turns about its first point into the
   /// other one.
@@ -118,28 +119,76 @@ class StoppingTimes {
   /// What a part passes in the step, with room for its turn.
   [[nodiscard]] Bounds<Real, Dim> swept_by(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return grown(united(pairs_.bounds_at(part, before(body)), pairs_.bounds_at(part, body)),
+    return grown(united(pairs_.bounds_at(part, part.pose(before(body))), pairs_.bounds_at(part, part.pose(body))),
                  std::min(way(part), part.convex->reach));
   }
-  /// The parts of other bodies that one may meet on its way, and pass, in the order of their numbers: fast ones on
-  /// their ways, and others where the step began, with the margin of contacts. The rooms of the pairs are larger by
-  /// what has been before, and their tree has an order of its own: a run that goes on from a snapshot has others.
-  [[nodiscard]] std::vector<std::uint32_t> parts_near(const RigidPart<Real, Dim>& of) const {
-    const Bounds<Real, Dim> swept = swept_by(of);
-    const auto matters = [&](std::uint32_t j) {
-      return pairs_.parts()[j].body != of.body && may_pass(of, pairs_.parts()[j]);
-    };
-    std::vector<std::uint32_t> near;
-    tree_of_fast_.for_each_overlap(swept, [&](std::uint32_t k) {
-      if (matters(fast_[k])) near.push_back(fast_[k]);
+  void find_first_contact(const RigidPart<Real, Dim>& part, std::span<const PartPair> near) {
+    if (near.empty() && world_.meshes().empty()) return;
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    const MovingBody<Real, Dim> moving = motion_of(part, body, step_);
+    for (const PartPair& pair : near) {
+      const RigidPart<Real, Dim>& other = pairs_.parts()[pair.b];
+      if (!world_.collide(part.body, other.body)) continue;
+      if (world_.traits(other.body).is_sensor || has_contact(part, other)) continue;
+      const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
+                                         part.inner_radius / 100);
+      if (contact && contact->time > Real(0)) stop(part.body, contact->time, other.body);
+    }
+    for (const WorldMesh<Real, Dim>& mesh : world_.meshes())
+      if (mesh.collides(world_.traits(part.body)))
+        stop(part.body, time_before_passing(moving, *mesh.geometry, part.inner_radius, stops_[part.body].time, step_));
+  }
+  /// The parts of other bodies that each fast part may meet on its way, and pass, in the order of their numbers: fast
+  /// ones on their ways, and others where the step began, with the margin of contacts. The rooms of the pairs are
+  /// larger by what has been before, and their tree has an order of its own: a run that goes on from a snapshot has
+  /// others.
+  void find_near(ThreadTeam& team) {
+    if (passing_.empty() && pairs_.still().empty()) return;
+    swept_.resize(fast_.size());
+    team.for_each(0, fast_.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) swept_[k] = swept_by(pairs_.parts()[fast_[k]]);
     });
-    pairs_.tree().for_each_overlap(swept, [&](std::uint32_t j) {
-      if (is_fast_[j] || !matters(j)) return;
-      const RigidPart<Real, Dim>& part = pairs_.parts()[j];
-      if (overlap(swept, pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_))) near.push_back(j);
-    });
-    std::ranges::sort(near);
-    return near;
+    find_near_fast();
+    auto passing = passing_.begin();
+    for (std::uint32_t k = 0; k < fast_.size(); ++k) {
+      const auto meet = [&](std::uint32_t j) {
+        if (is_fast_[j] || !matters(fast_[k], j)) return;
+        const RigidPart<Real, Dim>& part = pairs_.parts()[j];
+        if (overlap(swept_[k], pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_)))
+          near_.push_back({fast_[k], j});
+      };
+      if (passing != passing_.end() && *passing == k) {
+        pairs_.tree().for_each_overlap(swept_[k], meet);
+        ++passing;
+      } else if (!pairs_.still().empty()) {
+        pairs_.for_each_still(swept_[k], meet);
+      }
+    }
+    std::ranges::sort(near_);
+  }
+  /// Pairs of fast parts, of which one can pass others that move, twice.
+  void find_near_fast() {
+    constexpr std::size_t most_tests = 1 << 16;  // some 0.1 ms
+    const bool are_few = passing_.size() * fast_.size() <= most_tests;
+    BoundsTree<Real, Dim> tree;
+    if (!are_few) tree.build(swept_);
+    for (const std::uint32_t k : passing_) {
+      const auto meet = [&](std::uint32_t n) {
+        if (!matters(fast_[k], fast_[n])) return;
+        near_.push_back({fast_[k], fast_[n]});
+        if (!can_pass_movers(pairs_.parts()[fast_[n]])) near_.push_back({fast_[n], fast_[k]});
+      };
+      if (!are_few) {
+        tree.for_each_overlap(swept_[k], meet);
+        continue;
+      }
+      for (std::uint32_t n = 0; n < swept_.size(); ++n)
+        if (overlap(swept_[k], swept_[n])) meet(n);
+    }
+  }
+  [[nodiscard]] bool matters(std::uint32_t i, std::uint32_t j) const {
+    const auto parts = pairs_.parts();
+    return parts[i].body != parts[j].body && may_pass(parts[i], parts[j]);
   }
   /// The body at the beginning of the step.
   [[nodiscard]] RigidBody<Real, Dim> before(const RigidBody<Real, Dim>& body) const {
@@ -171,6 +220,13 @@ class StoppingTimes {
     const Vector<Real, Dim> of_b = bodies_[b.body].x - bodies_[b.body].x_before;
     return length(Vector<Real, Dim>(of_a - of_b)) > a.inner_radius + b.inner_radius;
   }
+  /// Whether the way of a part is long enough that it may pass another one that moves, too: of two of which neither has
+  /// such a way, the difference of both ways is at most the sum of their inner radii, see `may_pass`. The factor is
+  /// room for rounding.
+  [[nodiscard]] bool can_pass_movers(const RigidPart<Real, Dim>& part) const {
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    return length(Vector<Real, Dim>(body.x - body.x_before)) > Real(0.999) * part.inner_radius;
+  }
   /// The solver has taken care of those.
   [[nodiscard]] bool has_contact(const RigidPart<Real, Dim>& a, const RigidPart<Real, Dim>& b) const {
     const auto* const first = pairs_.parts().data();
@@ -200,8 +256,9 @@ class StoppingTimes {
   std::vector<Stop<Real>> stops_;
   std::vector<std::uint8_t> is_fast_;     // of each part
   std::vector<std::uint32_t> fast_;       // the parts that are
-  std::vector<Bounds<Real, Dim>> swept_;  // by these
-  BoundsTree<Real, Dim> tree_of_fast_;
+  std::vector<std::uint32_t> passing_;    // the places there of those that can pass others that move
+  std::vector<Bounds<Real, Dim>> swept_;  // by the fast ones
+  std::vector<PartPair> near_;            // fast ones, and what they may meet
 };
 
 /// Puts a body back to where it was at a time of the step.
@@ -228,15 +285,14 @@ void carry_along(RigidBody<Real, Dim>& body, const RigidBody<Real, Dim>& driven,
 
 /// Stops fast bodies. Returns how many. `bodies` have the world's bodies first.
 template <class Real, int Dim>
-std::size_t stop_fast_bodies(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+std::size_t stop_fast_bodies(ThreadTeam& team, const World<Real, Dim>& world, RigidPairs<Real, Dim>& pairs,
                              std::span<const PartContact<Real, Dim>> contacts, const Real& step,
                              std::span<RigidBody<Real, Dim>> bodies) {
   StoppingTimes<Real, Dim> times(team, world, pairs, contacts, step, bodies);
-  for (const RigidPart<Real, Dim>& part : pairs.parts())
-    if (times.is_fast(part)) times.find_first_contact(part);
-  if (times.has_fast())
-    for (const PartContact<Real, Dim>& found : contacts)
-      if (found.contact.size > 0) times.find_depth(found);
+  if (!times.may_stop()) return 0;
+  times.find_first_contacts();
+  for (const PartContact<Real, Dim>& found : contacts)
+    if (found.contact.size > 0) times.find_depth(found);
   std::size_t stopped = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
     const Stop<Real> stop = times.stops()[i];

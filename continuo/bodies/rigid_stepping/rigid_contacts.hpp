@@ -33,23 +33,23 @@ class RigidContacts {
  public:
   using V = Vector<Real, Dim>;
 
-  /// Finds the contacts of all pairs, which may be others than before, where `is_active(a, b)` tells whether one of the
-  /// bodies is awake; contacts of others stay as they are. The walls are the last of the bodies. `are_others`: whether
-  /// the pairs may be others than when this was last called.
+  /// Finds the contacts of all pairs, where `is_active(a, b)` tells whether one of the bodies is awake; contacts of
+  /// others stay as they are. The walls are the last of the bodies.
   template <class IsActive>
-  void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs, bool are_others,
+  void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
             std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active) {
-    if (are_others || !is_of_pairs_ || contacts_.size() != without_meshes_ || !world.meshes().empty())
-      take_pairs(pairs.pairs(), pairs.first_mesh());
-    is_of_pairs_ = true;
-    team.for_each(0, contacts_.size(), 32, [&](std::size_t from, std::size_t to) {
-      for (std::size_t k = from; k < to; ++k) update(world, pairs, bodies, step, is_active, contacts_[k]);
+    set_mesh_contacts_apart(pairs.first_mesh());
+    blocks_.resize(std::clamp<std::size_t>(pairs.pairs().size() / 256, 1, 1024));
+    team.share(blocks_.size(), [&](std::size_t k) {
+      begin_block(k, pairs.pairs());
+      find_in_block(world, pairs, bodies, is_active, k);
     });
+    take_blocks(team);
     without_meshes_ = contacts_.size();
     if (!world.meshes().empty()) find_at_meshes(team, world, pairs, bodies, step, is_active);
   }
-  /// One for each pair of parts, or of a part and a wall, in the same order, without points where the two are not near;
-  /// then those with meshes.
+  /// One for each pair of parts, or of a part and a wall, that are near, in the order of the pairs; then those with
+  /// meshes.
   [[nodiscard]] std::span<PartContact<Real, Dim>> all() { return contacts_; }
   [[nodiscard]] std::span<const PartContact<Real, Dim>> all() const { return contacts_; }
   /// Those of parts and walls.
@@ -58,7 +58,7 @@ class RigidContacts {
   void find_anew() {
     for (PartContact<Real, Dim>& found : contacts_) found.contact.margin = -std::numeric_limits<Real>::infinity();
   }
-  void clear() { contacts_.clear(), without_meshes_ = 0, is_of_pairs_ = false; }
+  void clear() { contacts_.clear(), without_meshes_ = 0, are_apart_ = false; }
   /// Contacts with their impulses; the bodies are below `bodies`.
   template <class Archive>
   void transfer(Archive& archive, std::size_t bodies) {
@@ -67,7 +67,7 @@ class RigidContacts {
     archive(count);
     if constexpr (Archive::reads) {
       if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
-      is_of_pairs_ = false;
+      are_apart_ = false;
       contacts_.assign(static_cast<std::size_t>(count), {});
     }
     for (PartContact<Real, Dim>& found : contacts_) {
@@ -81,7 +81,9 @@ class RigidContacts {
         if (!archive.ok()) return;
     }
   }
-  [[nodiscard]] std::size_t memory() const { return contacts_.capacity() * sizeof(PartContact<Real, Dim>); }
+  [[nodiscard]] std::size_t memory() const {
+    return (contacts_.capacity() + merged_.capacity()) * sizeof(PartContact<Real, Dim>);
+  }
 
  private:
   template <class Archive>
@@ -99,24 +101,109 @@ class RigidContacts {
       archive(point.greatest_impulse), archive(point.feature);
     }
   }
-  /// Contacts of pairs that are there no more are dropped; those with meshes, of which a pair can have several, are
-  /// kept apart.
-  void take_pairs(std::span<const PartPair> pairs, std::uint32_t first_mesh) {
-    const auto is_at_mesh = [&](const PartContact<Real, Dim>& found) { return found.parts.b >= first_mesh; };
+  /// The contacts of a part of the list of pairs.
+  struct Block {
+    std::size_t first_pair = 0, last_pair = 0;  // up to the one before the last
+    std::size_t first = 0, last = 0;            // contacts of before, likewise; those that are lost have no points
+    std::size_t lost = 0, place = 0;            // how many are; where the contacts of now begin
+    std::vector<PartContact<Real, Dim>> born;
+
+    [[nodiscard]] std::size_t size() const { return last - first - lost + born.size(); }
+  };
+  /// Those with meshes, of which a pair can have several, are found anew in each step.
+  void set_mesh_contacts_apart(std::uint32_t first_mesh) {
     mesh_before_.clear();
+    if (are_apart_ && first_mesh == first_mesh_ && contacts_.size() == without_meshes_) return;
+    are_apart_ = true, first_mesh_ = first_mesh;
+    const auto is_at_mesh = [&](const PartContact<Real, Dim>& found) { return found.parts.b >= first_mesh; };
     std::ranges::copy_if(contacts_, std::back_inserter(mesh_before_), is_at_mesh);
     std::erase_if(contacts_, is_at_mesh);
-    auto solid = pairs | std::views::filter([&](const PartPair& pair) { return pair.b < first_mesh; });
-    if (std::ranges::equal(contacts_, solid, {}, &PartContact<Real, Dim>::parts)) return;
-    // Contacts are most of the memory of a heap: no more is kept than there are.
-    const auto before = std::exchange(contacts_, {});
-    contacts_.reserve(pairs.size());
-    std::size_t old = 0;
-    for (const PartPair& pair : solid) {
-      while (old < before.size() && before[old].parts < pair) ++old;
-      const bool is_kept = old < before.size() && before[old].parts == pair;
-      contacts_.push_back(is_kept ? before[old] : PartContact<Real, Dim>{.parts = pair, .contact = {}});
+    // Walls that have been added have numbers that were those of meshes.
+    if (!std::ranges::is_sorted(contacts_, {}, &PartContact<Real, Dim>::parts))
+      std::ranges::sort(contacts_, {}, &PartContact<Real, Dim>::parts);
+  }
+  /// All contacts of before are in one block, whether their pairs are still there or not.
+  void begin_block(std::size_t k, std::span<const PartPair> pairs) {
+    Block& block = blocks_[k];
+    const auto first_pair = [&](std::size_t of) { return pairs.size() * of / blocks_.size(); };
+    const auto first_contact = [&](std::size_t of) -> std::size_t {
+      if (of == 0) return 0;
+      if (of == blocks_.size()) return contacts_.size();
+      const auto at = std::ranges::lower_bound(contacts_, pairs[first_pair(of)], {}, &PartContact<Real, Dim>::parts);
+      return static_cast<std::size_t>(at - contacts_.begin());
+    };
+    block.first_pair = first_pair(k), block.last_pair = first_pair(k + 1);
+    block.first = first_contact(k), block.last = first_contact(k + 1);
+    block.lost = 0;
+    block.born.clear();
+  }
+  template <class IsActive>
+  void find_in_block(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+                     std::span<const RigidBody<Real, Dim>> bodies, IsActive&& is_active, std::size_t k) {
+    Block& block = blocks_[k];
+    std::size_t old = block.first;
+    const auto lose = [&](PartContact<Real, Dim>& contact) { contact.contact.size = 0, ++block.lost; };
+    for (const PartPair& pair : pairs.pairs().subspan(block.first_pair, block.last_pair - block.first_pair)) {
+      if (pair.b >= first_mesh_) continue;
+      while (old < block.last && contacts_[old].parts < pair) lose(contacts_[old++]);
+      const bool is_old = old < block.last && contacts_[old].parts == pair;
+      PartContact<Real, Dim>* const before = is_old ? &contacts_[old++] : nullptr;
+      const auto [a, b] = bodies_of(pair, world, pairs);
+      if (before) before->a = a, before->b = b;
+      if (!is_active(a, b)) continue;
+      if (!may_be_near(pair, pairs)) {
+        if (before) lose(*before);
+        continue;
+      }
+      PartContact<Real, Dim>& now =
+          before ? *before
+                 : block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
+      update(world, pairs, bodies, now);
+      if (now.contact.size > 0) continue;
+      before ? void(++block.lost) : block.born.pop_back();
     }
+    while (old < block.last) lose(contacts_[old++]);
+  }
+  [[nodiscard]] static std::pair<std::uint32_t, std::uint32_t> bodies_of(const PartPair& pair,
+                                                                         const World<Real, Dim>& world,
+                                                                         const RigidPairs<Real, Dim>& pairs) {
+    const auto parts = pairs.parts();
+    const auto size = static_cast<std::uint32_t>(parts.size());
+    return {parts[pair.a].body,
+            pair.b < size ? parts[pair.b].body : static_cast<std::uint32_t>(world.size()) + (pair.b - size)};
+  }
+  /// False where two parts are farther apart than where they have a contact. A NaN decides nothing.
+  [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs) {
+    if (pair.b >= pairs.parts().size()) return true;
+    const auto &a = pairs.placed(pair.a).bounds, &b = pairs.placed(pair.b).bounds;
+    bool are_apart = false;  // no branch: it would be unpredictable
+    for (std::size_t axis = 0; axis < a.lower.size(); ++axis) {
+      const bool is_above = a.lower[axis] > b.upper[axis], is_below = b.lower[axis] > a.upper[axis];
+      are_apart |= is_above | is_below;
+    }
+    return !are_apart;
+  }
+  /// Puts the contacts of before that are still there and the new ones into one list.
+  void take_blocks(ThreadTeam& team) {
+    std::size_t size = 0;
+    bool are_same = true;
+    for (Block& block : blocks_) {
+      block.place = size, size += block.size();
+      are_same = are_same && block.lost == 0 && block.born.empty();
+    }
+    if (are_same) return;
+    merged_.resize(size);
+    team.share(blocks_.size(), [this](std::size_t k) {
+      const Block& block = blocks_[k];
+      auto next = block.born.begin();
+      auto out = merged_.begin() + static_cast<std::ptrdiff_t>(block.place);
+      for (const auto& before : std::span(contacts_).subspan(block.first, block.last - block.first)) {
+        while (next != block.born.end() && next->parts < before.parts) *out++ = *next++;
+        if (before.contact.size > 0) *out++ = before;
+      }
+      std::copy(next, block.born.end(), out);
+    });
+    contacts_.swap(merged_);
   }
   template <class IsActive>
   void find_at_meshes(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
@@ -158,20 +245,15 @@ class RigidContacts {
       made.contact.friction = both.friction, made.contact.restitution = both.restitution;
     });
   }
-  template <class IsActive>
   static void update(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
-                     std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active,
-                     PartContact<Real, Dim>& found) {
+                     std::span<const RigidBody<Real, Dim>> bodies, PartContact<Real, Dim>& found) {
     const auto parts = pairs.parts();
     const RigidPart<Real, Dim>& part_a = parts[found.parts.a];
     const bool is_wall = found.parts.b >= parts.size();
     const std::uint32_t wall = is_wall ? found.parts.b - static_cast<std::uint32_t>(parts.size()) : 0;
-    const std::uint32_t a = part_a.body;
-    const std::uint32_t b = is_wall ? static_cast<std::uint32_t>(world.size()) + wall : parts[found.parts.b].body;
-    found.a = a, found.b = b;
-    if (!is_active(a, b)) return;
-    const Pose<Real, Dim> pose = part_a.pose(bodies[a]);
-    Real margin = RigidPairs<Real, Dim>::contact_margin(part_a, bodies[a], step);
+    const std::uint32_t a = found.a, b = found.b;
+    const Pose<Real, Dim>& pose = pairs.placed(found.parts.a).pose;
+    Real margin = pairs.placed(found.parts.a).margin;
     if (is_wall) {
       const Wall<Real, Dim> turned = facing(world.walls()[wall], bodies[a].x);
       const Plane<Real, Dim> plane{pose.local_direction(turned.normal),
@@ -180,16 +262,10 @@ class RigidContacts {
       found.contact = contact_of(touching, pose, margin, bodies[a], bodies[b], &found.contact);
     } else {
       const RigidPart<Real, Dim>& part_b = parts[found.parts.b];
-      margin += RigidPairs<Real, Dim>::contact_margin(part_b, bodies[b], step);
-      const Pose<Real, Dim> pose_b = part_b.pose(bodies[b]);
-      const Real reach = part_a.convex->reach + part_b.convex->reach + margin;
-      if (squared(pose_b.centre - pose.centre) > reach * reach) {
-        found.contact.size = 0;
-        return;
-      }
+      margin += pairs.placed(found.parts.b).margin;
       const Real size = std::min(part_a.convex->reach, part_b.convex->reach);
       if (!follow(found.contact, margin, size, bodies[a], bodies[b])) {
-        const Pose<Real, Dim> b_in_a = relative(pose, pose_b);
+        const Pose<Real, Dim> b_in_a = relative(pose, pairs.placed(found.parts.b).pose);
         const Manifold<Real, Dim> touching =
             part_a.is_box() && part_b.is_box()
                 ? manifold_of_boxes(*part_a.convex, *part_b.convex, {part_a.half, part_b.half, b_in_a}, margin)
@@ -202,9 +278,11 @@ class RigidContacts {
     const Material<Real> both = combined(world.combine_rule, world.material[a], of_b);
     found.contact.friction = both.friction, found.contact.restitution = both.restitution;
   }
-  std::vector<PartContact<Real, Dim>> contacts_, mesh_before_;
+  std::vector<PartContact<Real, Dim>> contacts_, merged_, mesh_before_;
   std::size_t without_meshes_ = 0;
-  bool is_of_pairs_ = false;  // whether there is one for each pair
+  bool are_apart_ = false;        // whether those with meshes are known
+  std::uint32_t first_mesh_ = 0;  // in pairs, then
+  std::vector<Block> blocks_;
   std::vector<PartPair> at_mesh_;
   std::vector<std::vector<PartContact<Real, Dim>>> found_;  // at meshes
 };

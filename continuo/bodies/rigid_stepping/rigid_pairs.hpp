@@ -43,6 +43,14 @@ struct RigidPart {
   }
 };
 
+/// A part at the beginning of a step.
+template <class Real, int Dim>
+struct PlacedPart {
+  Bounds<Real, Dim> bounds{};  // of where it has contacts
+  Pose<Real, Dim> pose{};
+  Real margin{};  // of contacts
+};
+
 template <class Real, int Dim>
 class RigidPairs {
  public:
@@ -88,18 +96,41 @@ class RigidPairs {
   }
   /// All parts, by the numbers of their bodies.
   [[nodiscard]] std::span<const RigidPart<Real, Dim>> parts() const { return parts_; }
+  /// A part as the last update has seen it.
+  [[nodiscard]] const PlacedPart<Real, Dim>& placed(std::uint32_t part) const { return placed_[part]; }
   /// In increasing order.
   [[nodiscard]] std::span<const PartPair> pairs() const { return pairs_; }
   [[nodiscard]] const BoundsTree<Real, Dim>& tree() const { return tree_; }
+  /// Finds the parts of bodies that do not move.
+  void find_still(std::span<const RigidBody<Real, Dim>> bodies) {
+    still_before_.swap(still_);
+    still_.clear();
+    for (std::uint32_t i = 0; i < parts_.size(); ++i)
+      if (bodies[parts_[i].body].is_fixed()) still_.push_back(i);
+    // Where most parts are still, as those of bodies that sleep, and so others than before, the tree of all serves.
+    if (2 * still_.size() > parts_.size()) return tree_of_still_.build({});
+    still_rooms_.clear();
+    for (const std::uint32_t i : still_) still_rooms_.push_back(rooms_[i]);
+    still_ == still_before_ ? tree_of_still_.refit(still_rooms_) : tree_of_still_.build(still_rooms_);
+  }
+  /// Those found last, in increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> still() const { return still_; }
+  /// Calls visit(part) for those of them whose rooms overlap `box`, and perhaps for others.
+  template <class Visit>
+  void for_each_still(const Bounds<Real, Dim>& box, Visit&& visit) const {
+    if (tree_of_still_.size() < still_.size()) return tree_.for_each_overlap(box, visit);
+    tree_of_still_.for_each_overlap(box, [&](std::uint32_t k) { visit(still_[k]); });
+  }
   [[nodiscard]] std::size_t memory() const {
     return parts_.capacity() * sizeof(parts_[0]) + pairs_.capacity() * sizeof(PartPair) + tree_.memory() +
-           rooms_.capacity() * sizeof(rooms_[0]) + balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
+           tree_of_still_.memory() + placed_.capacity() * sizeof(placed_[0]) + rooms_.capacity() * sizeof(rooms_[0]) +
+           balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
   }
 
-  /// An error where there are too many pairs, of which the last update has listed one more than there may be.
+  /// An error where there are too many pairs, of which the last update has not listed all.
   [[nodiscard]] Status check_number() const { return check_crowd(pairs_.size(), parts_.size()); }
-  /// Brings the pairs up to date, where `collide(i, j)` tells whether bodies i and j may. Returns whether parts had
-  /// left their rooms.
+  /// Brings the pairs up to date, where `collide(i, j)` tells whether bodies i and j may; it is called at once by
+  /// several threads. Returns whether parts had left their rooms.
   template <class Collide>
   bool update(ThreadTeam& team, const World<Real, Dim>& world, std::span<const RigidBody<Real, Dim>> bodies,
               const Real& step, Collide&& collide) {
@@ -107,48 +138,88 @@ class RigidPairs {
     if (moved_.empty()) return false;
     tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
     is_new_ = false;
-    const std::size_t most = most_near_pairs(parts_.size());
     const auto may_touch = [&](std::uint32_t i, std::uint32_t j) {
-      return pairs_.size() <= most && parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
+      return parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
     };
-    if (moved_.size() * 4 > parts_.size()) {
+    // A search for all pairs has each once, one for those of the parts that have moved some of them twice.
+    const bool are_all = moved_.size() * 3 > parts_.size();
+    if (are_all) {
       pairs_.clear();
-      tree_.for_each_pair([&](std::uint32_t i, std::uint32_t j) {
-        if (may_touch(i, j)) pairs_.push_back({i, j});
-      });
-      for (std::uint32_t i = 0; i < parts_.size(); ++i) add_walls(world, i);
-      sort_pairs();
+      find_all_pairs(team, may_touch);
     } else {
-      std::erase_if(pairs_, [&](const PartPair& pair) {
-        return has_moved_[pair.a] || (pair.b < parts_.size() && has_moved_[pair.b]);
-      });
-      const auto kept = static_cast<std::ptrdiff_t>(pairs_.size());
-      for (const std::uint32_t i : moved_) {
-        tree_.for_each_overlap(rooms_[i], [&](std::uint32_t j) {
-          if (may_touch(i, j) && (!has_moved_[j] || i < j)) pairs_.push_back({std::min(i, j), std::max(i, j)});
-        });
-        add_walls(world, i);
-      }
-      std::sort(pairs_.begin() + kept, pairs_.end());
-      merged_.resize(pairs_.size());
-      std::merge(pairs_.begin(), pairs_.begin() + kept, pairs_.begin() + kept, pairs_.end(), merged_.begin());
-      pairs_.swap(merged_);
+      find_pairs_of_moved(team, may_touch);
     }
+    for (const std::uint32_t i : moved_) add_walls(world, i);
+    if (are_all)
+      for (std::uint32_t i = 0; i < parts_.size(); ++i)
+        if (!has_moved_[i]) add_walls(world, i);
+    sort_new_pairs();
+    if (world.may_collide)
+      std::erase_if(new_pairs_, [&](const PartPair& pair) {
+        return pair.b < parts_.size() && !world.may_collide(world, parts_[pair.a].body, parts_[pair.b].body);
+      });
+    take_new_pairs();
     return true;
   }
 
  private:
+  template <class MayTouch>
+  void find_all_pairs(ThreadTeam& team, MayTouch&& may_touch) {
+    const std::size_t most = most_near_pairs(parts_.size());
+    const auto searches = tree_.pair_searches(team.is_alone() ? 1 : 16 * team.threads());
+    found_.resize(searches.size() + 1);
+    team.share(searches.size(), [&](std::size_t k) {
+      found_[k].clear();
+      tree_.for_each_pair_of(searches[k], [&](std::uint32_t i, std::uint32_t j) {
+        if (found_[k].size() <= most && may_touch(i, j)) found_[k].push_back({i, j});
+      });
+    });
+    found_.back().clear();
+  }
+  template <class MayTouch>
+  void find_pairs_of_moved(ThreadTeam& team, MayTouch&& may_touch) {
+    const std::size_t most = most_near_pairs(parts_.size());
+    const std::size_t blocks = std::clamp<std::size_t>(moved_.size() / 32, 1, 256);
+    found_.resize(blocks + 1);
+    team.share(blocks, [&](std::size_t k) {
+      found_[k].clear();
+      for (std::size_t n = moved_.size() * k / blocks; n < moved_.size() * (k + 1) / blocks; ++n) {
+        const std::uint32_t i = moved_[n];
+        tree_.for_each_overlap(rooms_[i], [&](std::uint32_t j) {
+          const bool is_new = !has_moved_[j] || i < j;
+          if (is_new && found_[k].size() <= most && may_touch(i, j))
+            found_[k].push_back({std::min(i, j), std::max(i, j)});
+        });
+      }
+    });
+    found_.back().clear();
+  }
   /// By counting those of each part: the few of one part are sorted alone.
-  void sort_pairs() {
+  void sort_new_pairs() {
     first_pair_.assign(parts_.size() + 1, 0);
-    for (const PartPair& pair : pairs_) ++first_pair_[pair.a + 1];
+    for (const auto& found : found_)
+      for (const PartPair& pair : found) ++first_pair_[pair.a + 1];
     std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
-    merged_.resize(pairs_.size());
-    for (const PartPair& pair : pairs_) merged_[first_pair_[pair.a]++] = pair;
-    pairs_.swap(merged_);
+    new_pairs_.resize(first_pair_.back());
+    for (const auto& found : found_)
+      for (const PartPair& pair : found) new_pairs_[first_pair_[pair.a]++] = pair;
     for (std::size_t i = 0, first = 0; i < parts_.size(); first = first_pair_[i++])
-      std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(first),
-                pairs_.begin() + static_cast<std::ptrdiff_t>(first_pair_[i]));
+      std::sort(new_pairs_.begin() + static_cast<std::ptrdiff_t>(first),
+                new_pairs_.begin() + static_cast<std::ptrdiff_t>(first_pair_[i]));
+  }
+  /// Puts the new pairs among those of before of which no part has moved.
+  void take_new_pairs() {
+    if (pairs_.empty()) return pairs_.swap(new_pairs_);
+    merged_.clear();
+    merged_.reserve(pairs_.size() + new_pairs_.size());
+    auto next = new_pairs_.begin();
+    for (const PartPair& pair : pairs_) {
+      if (has_moved_[pair.a] || (pair.b < parts_.size() && has_moved_[pair.b])) continue;
+      while (next != new_pairs_.end() && *next < pair) merged_.push_back(*next++);
+      merged_.push_back(pair);
+    }
+    merged_.insert(merged_.end(), next, new_pairs_.end());
+    pairs_.swap(merged_);
   }
   [[nodiscard]] static Real inner_radius(const Convex<Real, Dim>& convex) {
     Real least = convex.core.faces.empty() ? Real(0) : convex.core.faces.front().offset;
@@ -156,7 +227,7 @@ class RigidPairs {
     return least + convex.rounding;
   }
   void find_movers(ThreadTeam& team, std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
-    rooms_.resize(parts_.size()), has_moved_.resize(parts_.size());
+    rooms_.resize(parts_.size()), has_moved_.resize(parts_.size()), placed_.resize(parts_.size());
     team.for_each(0, parts_.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) has_moved_[i] = leaves_room(i, bodies, step);
     });
@@ -168,11 +239,26 @@ class RigidPairs {
   [[nodiscard]] bool leaves_room(std::size_t i, std::span<const RigidBody<Real, Dim>> bodies, const Real& step) {
     const RigidPart<Real, Dim>& part = parts_[i];
     const RigidBody<Real, Dim>& body = bodies[part.body];
-    if (body.is_fixed() && !is_new_ && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved) return false;
-    const Bounds<Real, Dim> bounds = bounds_of_contacts(part, body, step);
-    if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) return false;
-    rooms_[i] = grown(bounds, Real(0.1) * part.convex->reach + 2 * contact_margin(part, body, step));
+    const Pose<Real, Dim> pose = part.pose(body);
+    const Real margin = contact_margin(part, body, step);
+    const Bounds<Real, Dim> bounds = grown(bounds_at(part, pose), margin);
+    placed_[i] = {bounds, pose, margin};
+    if (!is_new_) {
+      const bool is_still = body.is_fixed() && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved;
+      if (is_still || united(rooms_[i], bounds) == rooms_[i]) return false;
+    }
+    rooms_[i] = room(part, body, bounds, step);
     return true;
+  }
+  /// Room for some steps at the same velocity.
+  [[nodiscard]] static Bounds<Real, Dim> room(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
+                                              const Bounds<Real, Dim>& bounds, const Real& step) {
+    const Real reach = part.convex->reach, duration = 2 * step;
+    const Bounds<Real, Dim> around =
+        grown(bounds, Real(0.12) * reach + std::min(length(body.spin) * reach * duration, reach));
+    const Real speed = length(body.v);
+    const V way = body.v * (speed * duration > reach ? reach / speed : duration);
+    return united(around, {around.lower + way, around.upper + way});
   }
   [[nodiscard]] static Bounds<Real, Dim> bounds_of_box(const V& half, const Pose<Real, Dim>& pose) {
     V reach;
@@ -189,22 +275,21 @@ class RigidPairs {
       for (std::size_t axis = 0; axis < Dim; ++axis) reach += std::abs(walls[k].normal[axis]) * half[axis];
       // The side of a thin wall is that of the centre of the body, from which a part of a compound may be beyond it.
       if (walls[k].thin) side = std::abs(side) - length(parts_[i].in_body.centre);
-      if (side <= reach) pairs_.push_back({i, static_cast<std::uint32_t>(parts_.size()) + k});
+      if (side <= reach) found_.back().push_back({i, static_cast<std::uint32_t>(parts_.size()) + k});
     }
     for (std::uint32_t k = 0; k < meshes_.size(); ++k)
       if (world.meshes()[k].collides(world.traits(parts_[i].body)) && overlap(rooms_[i], meshes_[k]->bounds()))
-        pairs_.push_back({i, first_mesh_ + k});
+        found_.back().push_back({i, first_mesh_ + k});
   }
 
  public:
-  [[nodiscard]] static Bounds<Real, Dim> bounds_at(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body) {
-    const Pose<Real, Dim> pose = part.pose(body);
+  [[nodiscard]] static Bounds<Real, Dim> bounds_at(const RigidPart<Real, Dim>& part, const Pose<Real, Dim>& pose) {
     return part.is_box() ? bounds_of_box(part.half, pose) : bounds_of(*part.convex, pose);
   }
   /// Bounds of where a part has contacts in a step that begins so. They are within its room.
   [[nodiscard]] static Bounds<Real, Dim> bounds_of_contacts(const RigidPart<Real, Dim>& part,
                                                             const RigidBody<Real, Dim>& body, const Real& step) {
-    return grown(bounds_at(part, body), contact_margin(part, body, step));
+    return grown(bounds_at(part, part.pose(body)), contact_margin(part, body, step));
   }
   /// Surfaces that are nearer than the sum of these of both parts have a contact.
   [[nodiscard]] static Real contact_margin(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
@@ -220,11 +305,15 @@ class RigidPairs {
   std::uint32_t first_mesh_ = 0;
   std::vector<Convex<Real, Dim>> balls_;
   std::vector<Bounds<Real, Dim>> rooms_;
+  std::vector<PlacedPart<Real, Dim>> placed_;
   std::vector<std::uint32_t> moved_;
   std::vector<std::uint8_t> has_moved_;  // each part
-  std::vector<PartPair> pairs_, merged_;
-  std::vector<std::size_t> first_pair_;  // of each part, while they are sorted
-  BoundsTree<Real, Dim> tree_;
+  std::vector<PartPair> pairs_, new_pairs_, merged_;
+  std::vector<std::vector<PartPair>> found_;  // the new ones, of each part of a search, and those with walls and meshes
+  std::vector<std::size_t> first_pair_;       // of each part, while they are sorted
+  std::vector<std::uint32_t> still_, still_before_;
+  std::vector<Bounds<Real, Dim>> still_rooms_;
+  BoundsTree<Real, Dim> tree_, tree_of_still_;
   bool is_new_ = true;
 };
 

@@ -204,7 +204,7 @@ class RigidStepper {
 
   [[nodiscard]] Status find_contacts() {
     const auto collide = [this](std::uint32_t i, std::uint32_t j) {
-      return world_.collide(i, j) && (!world_.may_collide || world_.may_collide(world_, i, j)) &&
+      return world_.collide(i, j) &&
              (apart_.empty() || !std::ranges::binary_search(apart_, std::pair(std::min(i, j), std::max(i, j))));
     };
     for (;;) {
@@ -215,7 +215,7 @@ class RigidStepper {
         return fault;
       }
       const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
-      contacts_.find(team_, world_, pairs_, are_others, bodies_, options_.step, is_active);
+      contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active);
       if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return {};
       load_bodies();
     }
