@@ -43,13 +43,13 @@ struct RigidContactPoint {
 template <class Real, int Dim>
 struct RigidContact {
   static constexpr std::size_t most_points = Manifold<Real, Dim>::most_points;
+  std::size_t size = 0;  // of the points: at the beginning, where the bodies are, for those who need no more
+  Real friction{}, restitution{};
   Vector<Real, Dim> normal{};       // from a to b, in the world
   Vector<Real, Dim> normal_in_a{};  // the same, in the frame of a
   Pose<Real, Dim> found_at{};       // of b in the frame of a, when the points were found
   Real margin{};                    // then
   std::array<RigidContactPoint<Real, Dim>, most_points> points{};
-  std::size_t size = 0;  // of the points
-  Real friction{}, restitution{};
 
   [[nodiscard]] auto all() { return std::span(points).first(size); }
   [[nodiscard]] auto all() const { return std::span(points).first(size); }

@@ -46,30 +46,37 @@ class RigidIslands {
   template <class Moves>
   void number(std::size_t bodies, std::span<const RowBlock> blocks, Moves&& moves) {
     const auto mover = [&](const RowBlock& block) { return moves(block.a) ? block.a : block.b; };
+    // The leader of a body has the lowest number: those of lower ones are known before.
+    for (std::uint32_t& first : leader_) first = leader_[first];
     island_.assign(bodies, none);
-    for (const RowBlock& block : blocks) island_[leader(mover(block))] = 0;
+    for (const RowBlock& block : blocks) island_[leader_[mover(block)]] = 0;
     std::uint32_t count = 0;
-    for (std::uint32_t& island : island_)
-      if (island != none) island = count++;
+    for (std::uint32_t i = 0; i < bodies; ++i)
+      if (leader_[i] != i) {
+        island_[i] = moves(i) ? island_[leader_[i]] : none;
+      } else if (island_[i] != none) {
+        island_[i] = count++;
+      }
     first_body_.assign(count + 1, 0), first_block_.assign(count + 1, 0);
     for (std::uint32_t i = 0; i < bodies; ++i)
-      if (island_[leader(i)] != none && moves(i)) ++first_body_[island_[leader(i)] + 1];
-    for (const RowBlock& block : blocks) ++first_block_[island_[leader(mover(block))] + 1];
+      if (island_[i] != none) ++first_body_[island_[i] + 1];
+    for (const RowBlock& block : blocks) ++first_block_[island_[mover(block)] + 1];
     std::partial_sum(first_body_.begin(), first_body_.end(), first_body_.begin());
     std::partial_sum(first_block_.begin(), first_block_.end(), first_block_.begin());
-    std::vector<std::uint32_t> next_body(first_body_), next_block(first_block_);
+    next_body_ = first_body_, next_block_ = first_block_;
     bodies_.resize(first_body_.back()), blocks_.resize(first_block_.back()), place_.resize(bodies);
     for (std::uint32_t i = 0; i < bodies; ++i) {
-      const std::uint32_t island = island_[leader(i)];
-      if (island == none || !moves(i)) continue;
-      place_[i] = next_body[island] - first_body_[island];
-      bodies_[next_body[island]++] = i;
+      const std::uint32_t island = island_[i];
+      if (island == none) continue;
+      place_[i] = next_body_[island] - first_body_[island];
+      bodies_[next_body_[island]++] = i;
     }
-    for (std::uint32_t k = 0; k < blocks.size(); ++k) blocks_[next_block[island_[leader(mover(blocks[k]))]]++] = k;
+    for (std::uint32_t k = 0; k < blocks.size(); ++k) blocks_[next_block_[island_[mover(blocks[k])]]++] = k;
   }
 
   static constexpr std::uint32_t none = 0xffffffff;
   std::vector<std::uint32_t> leader_, island_, place_, bodies_, blocks_, first_body_{0}, first_block_{0};
+  std::vector<std::uint32_t> next_body_, next_block_;  // while they are filled
 };
 
 }  // namespace continuo

@@ -257,14 +257,14 @@ class RigidStepper {
     is_swept_.assign(islands_.size(), false);
     for_each_island([&](std::size_t k) {
       const auto blocks = islands_.blocks(k);
-      const auto contacts =
-          std::ranges::count_if(blocks, [this](std::uint32_t block) { return block < active_.size(); });
-      const bool has_joints = static_cast<std::size_t>(contacts) < blocks.size();
+      const auto joints = std::ranges::lower_bound(blocks, static_cast<std::uint32_t>(active_.size()));
+      const auto contacts = joints - blocks.begin();
+      const bool has_joints = joints != blocks.end();
       const bool is_thin = 4 * blocks.size() <= 5 * islands_.bodies(k).size();
       const bool is_cheap = is_thin || (!is_crowded && blocks.size() <= most_blocks_of_small_islands);
       if (is_cheap || has_joints) solvers_[k].begin(islands_, k, rows_, bodies_);
-      const auto in_lanes =
-          std::ranges::count_if(blocks, [this](std::uint32_t block) { return may_be_in_lanes(block); });
+      const auto in_lanes = contacts + std::count_if(joints, blocks.end(),
+                                                     [this](std::uint32_t block) { return may_be_in_lanes(block); });
       const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
       if (has_joints ? is_large && !solvers_[k].is_direct() : !is_cheap) is_swept_[k] = 1;
     });
@@ -392,7 +392,14 @@ class RigidStepper {
     in_lanes_.clear(), easy_.clear();
     is_easy_.assign(world_.size(), false);
     gather_point_joints();
-    if (!has_lanes()) return;
+    if (has_lanes()) begin_lanes();
+    apart_from_lanes_.clear(), not_easy_.clear();
+    for (std::uint32_t i = 0; i < world_.size(); ++i) {
+      if (!is_in_lanes_[i]) apart_from_lanes_.push_back(i);
+      if (!is_easy_[i] && moves(i)) not_easy_.push_back(i);
+    }
+  }
+  void begin_lanes() {
     const Real h = substep();
     const Softness<Real> soft = softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h);
     manifolds_.begin(bodies_, contacts_.all(), swept_);
@@ -456,8 +463,7 @@ class RigidStepper {
       if (!is_swept_[k]) solvers_[k].push(rows_, bodies_);
       limit_energy(k, RowPass::push);
     });
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      if (!is_in_lanes_[i]) move(i, h);
+    for (const std::uint32_t i : apart_from_lanes_) move(i, h);
     if (has_lanes()) push_swept(h);
     keep_joints();
     for (const std::uint32_t i : joined_) take_state(i);
@@ -654,10 +660,8 @@ class RigidStepper {
       acceleration_[i] += world_.gravity * (world_.traits(i).gravity_scale - 1);
     std::vector<S> torque;
     if (!world_.torque_laws.empty()) torque = torques_now(now);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (is_easy_[i]) continue;
+    for (const std::uint32_t i : not_easy_) {
       RigidBody<Real, Dim>& body = bodies_[i];
-      if (body.is_fixed()) continue;
       body.v += acceleration_[i] * h;
       turn_freely(body, h);
       if (!torque.empty()) body.spin += body.inverse_inertia_now * torque[i] * h;
@@ -956,15 +960,16 @@ class RigidStepper {
   ThreadTeam team_;
   ManifoldSolver<Real, Dim> manifolds_{team_};
   PointJointSolver<Real, Dim> points_{team_};
-  std::vector<std::uint32_t> swept_;            // the contacts of islands that are swept
-  int relaxing_sweeps_ = 1;                     // of these, in a substep
-  std::vector<std::uint32_t> swept_joints_;     // their blocks of joints and locks
-  std::vector<std::uint32_t> joined_;           // the bodies of these
-  std::vector<std::uint8_t> is_swept_;          // of each island
-  std::vector<bool> is_in_lanes_;               // bodies of those islands, and bodies without contacts
-  std::vector<bool> is_easy_;                   // those that keep their spin, in gravity alone
-  std::vector<std::uint32_t> easy_, in_lanes_;  // these, and the others, with driven ones
-  std::vector<std::uint32_t> scalar_;           // the blocks of all other contacts
+  std::vector<std::uint32_t> swept_;                        // the contacts of islands that are swept
+  int relaxing_sweeps_ = 1;                                 // of these, in a substep
+  std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
+  std::vector<std::uint32_t> joined_;                       // the bodies of these
+  std::vector<std::uint8_t> is_swept_;                      // of each island
+  std::vector<bool> is_in_lanes_;                           // bodies of those islands, and bodies without contacts
+  std::vector<bool> is_easy_;                               // those that keep their spin, in gravity alone
+  std::vector<std::uint32_t> easy_, in_lanes_;              // these, and the others, with driven ones
+  std::vector<std::uint32_t> apart_from_lanes_, not_easy_;  // all bodies, and all that move, but those
+  std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
   std::vector<RigidBody<Real, Dim>> bodies_;
   RigidPairs<Real, Dim> pairs_;
   RigidContacts<Real, Dim> contacts_;
