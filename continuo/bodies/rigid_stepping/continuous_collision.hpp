@@ -183,7 +183,7 @@ class StoppingTimes {
         continue;
       }
       for (std::uint32_t n = 0; n < swept_.size(); ++n)
-        if (overlap(swept_[k], swept_[n])) meet(n);
+        if (!are_apart(swept_[k], swept_[n])) meet(n);
     }
   }
   [[nodiscard]] bool matters(std::uint32_t i, std::uint32_t j) const {

@@ -93,10 +93,12 @@ template <class Real, int Dim>
                           const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
   constexpr Real most = Real(1e-3);
   if (contact.size == 0 || margin > contact.margin + most * size) return false;
-  const Pose<Real, Dim> now = relative(a.pose(), b.pose());
-  if (!(squared(now.centre - contact.found_at.centre) <= most * most * size * size)) return false;
-  for (std::size_t axis = 0; axis < Dim; ++axis)
-    if (!(squared(now.axes[axis] - contact.found_at.axes[axis]) <= most * most)) return false;
+  const Vector<Real, Dim> centre = transposed_times(a.axes, Vector<Real, Dim>(b.x - a.x));
+  if (!(squared(centre - contact.found_at.centre) <= most * most * size * size)) return false;
+  for (std::size_t axis = 0; axis < Dim; ++axis) {
+    const Vector<Real, Dim> now = transposed_times(a.axes, b.axes[axis]);
+    if (!(squared(now - contact.found_at.axes[axis]) <= most * most)) return false;
+  }
   contact.normal = a.axes * contact.normal_in_a;
   Real nearest = std::numeric_limits<Real>::infinity();
   for (auto& point : contact.all()) {

@@ -172,16 +172,10 @@ class RigidContacts {
     return {parts[pair.a].body,
             pair.b < size ? parts[pair.b].body : static_cast<std::uint32_t>(world.size()) + (pair.b - size)};
   }
-  /// False where two parts are farther apart than where they have a contact. A NaN decides nothing.
+  /// False where two parts are farther apart than where they have a contact.
   [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs) {
     if (pair.b >= pairs.parts().size()) return true;
-    const auto &a = pairs.placed(pair.a).bounds, &b = pairs.placed(pair.b).bounds;
-    bool are_apart = false;  // no branch: it would be unpredictable
-    for (std::size_t axis = 0; axis < a.lower.size(); ++axis) {
-      const bool is_above = a.lower[axis] > b.upper[axis], is_below = b.lower[axis] > a.upper[axis];
-      are_apart |= is_above | is_below;
-    }
-    return !are_apart;
+    return !are_apart(pairs.placed(pair.a).bounds, pairs.placed(pair.b).bounds);
   }
   /// Puts the contacts of before that are still there and the new ones into one list.
   void take_blocks(ThreadTeam& team) {
@@ -274,9 +268,9 @@ class RigidContacts {
       }
     }
     if (found.contact.size == 0) return;
-    const Material<Real>& of_b = is_wall ? world.walls()[wall].material : world.material[b];
-    const Material<Real> both = combined(world.combine_rule, world.material[a], of_b);
-    found.contact.friction = both.friction, found.contact.restitution = both.restitution;
+    const Material<Real>&of_a = world.material[a], &of_b = is_wall ? world.walls()[wall].material : world.material[b];
+    found.contact.friction = combined(world.combine_rule.friction, of_a.friction, of_b.friction);
+    found.contact.restitution = combined(world.combine_rule.restitution, of_a.restitution, of_b.restitution);
   }
   std::vector<PartContact<Real, Dim>> contacts_, merged_, mesh_before_;
   std::size_t without_meshes_ = 0;

@@ -127,7 +127,7 @@ class RigidStepper {
 
   [[nodiscard]] Softness<Real> softness_of_joints() const { return softness(1 / (4 * substep()), Real(2), substep()); }
   [[nodiscard]] Real substep() const { return options_.step / static_cast<Real>(options_.substeps); }
-  [[nodiscard]] bool moves(std::size_t body) const { return !bodies_[body].is_fixed(); }
+  [[nodiscard]] bool moves(std::size_t body) const { return moves_[body] != 0; }
   [[nodiscard]] std::uint32_t number_of(BodyHandle handle) const {
     return handle == BodyHandle{} ? static_cast<std::uint32_t>(bodies_.size() - 1)
                                   : static_cast<std::uint32_t>(world_.index(handle));
@@ -138,6 +138,7 @@ class RigidStepper {
   }
   void begin() {
     bodies_.assign(bodies_of(world_), {});
+    moves_.assign(bodies_.size(), 0);
     pairs_.begin(world_);
     rules_.ignored = world_.ignored_groups();
     is_stale_ = false;
@@ -196,6 +197,7 @@ class RigidStepper {
     const bool is_still = world_.is_fixed(i) || sleep_.is_asleep(i);
     if (world_.is_fixed(i) && !world_.traits(i).is_driven) body.v = {}, body.spin = {};
     body.inverse_mass = is_still ? Real(0) : world_.inverse_mass[i];
+    moves_[i] = body.is_fixed() ? 0 : 1;
     body.inertia = world_.inertia(i);
     body.is_ball = world_.solid(i) == nullptr || is_isotropic(body.inertia);
     body.inverse_inertia = is_still ? Inertia<Real, Dim>{} : inverse(body.inertia);
@@ -971,6 +973,7 @@ class RigidStepper {
   std::vector<std::uint32_t> apart_from_lanes_, not_easy_;  // all bodies, and all that move, but those
   std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
   std::vector<RigidBody<Real, Dim>> bodies_;
+  std::vector<std::uint8_t> moves_;  // whether each of them does: what goes through all contacts asks for no more
   RigidPairs<Real, Dim> pairs_;
   RigidContacts<Real, Dim> contacts_;
   Constraints<Real, Dim> rows_;
