@@ -186,9 +186,14 @@ class RigidContacts {
       are_same = are_same && block.lost == 0 && block.born.empty();
     }
     if (are_same) return;
+    // Contacts are most of the memory of a heap: what they are put into has hardly more room than they need.
+    if (merged_.capacity() < size) {
+      merged_ = {};
+      merged_.reserve(size + size / 16);
+    }
     merged_.resize(size);
     team.share(blocks_.size(), [this](std::size_t k) {
-      const Block& block = blocks_[k];
+      Block& block = blocks_[k];
       auto next = block.born.begin();
       auto out = merged_.begin() + static_cast<std::ptrdiff_t>(block.place);
       for (const auto& before : std::span(contacts_).subspan(block.first, block.last - block.first)) {
@@ -196,6 +201,7 @@ class RigidContacts {
         if (before.contact.size > 0) *out++ = before;
       }
       std::copy(next, block.born.end(), out);
+      if (block.born.capacity() > 32) block.born = {};  // as where a heap begins
     });
     contacts_.swap(merged_);
   }
