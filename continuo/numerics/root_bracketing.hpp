@@ -48,8 +48,9 @@ template <class Real>
 }  // namespace bracketing
 
 /// Narrows [near, far], where `beyond(t)` is f(t) with its sign turned so that it is <= 0 at near and > 0 at far, until
-/// no number lies strictly between. Zero counts as the near side, so that f has truly changed its sign at `far`. Where f
-/// is zero at `near`, up to sixteen numbers may lie between: to search among them would cost as much as to come there.
+/// no number lies strictly between. Zero counts as the near side, so that f has truly changed its sign at `far`. Where
+/// f is zero at `near`, up to sixteen numbers may lie between: to search among them would cost as much as to come
+/// there.
 ///
 /// Inverse quadratic interpolation by both ends and the end before; where it has come to one side twice, the next place
 /// is as far behind the guess as that end is before it, so that both ends close in. Where the values are not monotone,
