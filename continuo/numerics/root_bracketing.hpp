@@ -1,6 +1,5 @@
 // continuo/numerics/root_bracketing.hpp
-// A root between two points of opposite sign, enclosed until the two are neighbours in the number format, or nearly so
-// where f is zero by rounding.
+// A root between two points of opposite sign, enclosed until the two are neighbours in the number format.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -38,19 +37,10 @@ template <class Real>
   return is_between ? std::optional<Real>(t) : std::nullopt;
 }
 
-/// Between numbers of the size of t at this distance there are eight to sixteen others.
-template <class Real>
-[[nodiscard]] Real close(const Real& t) {
-  using std::abs;
-  return 8 * std::numeric_limits<Real>::epsilon() * abs(t);
-}
-
 }  // namespace bracketing
 
 /// Narrows [near, far], where `beyond(t)` is f(t) with its sign turned so that it is <= 0 at near and > 0 at far, until
-/// no number lies strictly between. Zero counts as the near side, so that f has truly changed its sign at `far`. Where
-/// f is zero at `near`, up to sixteen numbers may lie between: to search among them would cost as much as to come
-/// there.
+/// no number lies strictly between. Zero counts as the near side, so that f has truly changed its sign at `far`.
 ///
 /// Inverse quadratic interpolation by both ends and the end before; where it has come to one side twice, the next place
 /// is as far behind the guess as that end is before it, so that both ends close in. Where the values are not monotone,
@@ -71,11 +61,9 @@ template <class Real, class F>
   while (true) {
     const Real middle = near.t + (far.t - near.t) / 2;
     if (middle == near.t || middle == far.t) return {near.t, far.t};
-    if (near.value == 0 && abs(far.t - near.t) <= bracketing::close(far.t)) return {near.t, far.t};
     Real t = middle;
     if (near.value == 0) {
-      const Real first = max(bracketing::close(near.t) / 2, 2 * abs(nextafter(near.t, far.t) - near.t));
-      stride = stride != 0 ? 2 * stride : far.t > near.t ? first : -first;
+      stride = stride == 0 ? 2 * (nextafter(near.t, far.t) - near.t) : 2 * stride;
       if (abs(stride) < abs(middle - near.t)) t = near.t + stride;
     } else if (slow < 3) {
       if (const std::optional<Real> guess = bracketing::inverse_quadratic(near, far, last)) {
