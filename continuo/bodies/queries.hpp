@@ -43,12 +43,13 @@ struct PlacedShape {
 };
 
 /// Selects the objects of a query: bodies of the groups whose bit is set, walls, and meshes; of bodies and meshes those
-/// that have one of the categories.
+/// that have one of the categories; and not `without`.
 struct QueryFilter {
   std::uint32_t groups = ~std::uint32_t{0};      // bit i: the bodies of group i; by default all
   bool walls = true;                             // walls too
   bool meshes = true;                            // static meshes too
   std::uint64_t categories = ~std::uint64_t{0};  // bits of BodyTraits::category and MeshDefinition::category
+  BodyHandle without{};                          // a body that is left out, as the one that asks; by default none
 };
 
 /// A hit on a body, on a wall, whose number in world.walls() is `wall`, or on a facet of a static mesh, whose number in
@@ -158,7 +159,8 @@ class Queries {
   class ShapeSearch;
 
   [[nodiscard]] static bool takes(const QueryFilter& filter, const Item& item) {
-    return (filter.groups >> item.group & 1u) != 0 && (filter.categories & item.category) != 0;
+    return (filter.groups >> item.group & 1u) != 0 && (filter.categories & item.category) != 0 &&
+           item.body != filter.without;
   }
   [[nodiscard]] bool takes(const QueryFilter& filter, std::uint32_t mesh) const {
     return filter.meshes && meshes_[mesh].geometry && (filter.categories & meshes_[mesh].category) != 0;

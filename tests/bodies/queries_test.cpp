@@ -216,5 +216,30 @@ TEST(Queries, AThinWallHasTwoSides) {
   EXPECT_EQ(queries.in_box({{1, 0}}, {{3, 1}})->walls.size(), 1u);
 }
 
+// Each query as if a body were not there.
+TEST(Queries, LeaveOutABody) {
+  World<double, 3> world;
+  const auto near = world.add({.shape = Box<double, 3>{}, .position = {{2, 0, 0}}});
+  const auto far = world.add({.position = {{5, 0, 0}}});
+  ASSERT_TRUE(near && far);
+  const Queries queries(world);
+  const Ray<double, 3> ray{.direction = {{1, 0, 0}}};
+  const PlacedShape<double, 3> ball{.shape = Sphere<double>{0.1}}, large{.shape = Sphere<double>{6}};
+  for (const bool is_left_out : {false, true}) {
+    const QueryFilter filter{.without = is_left_out ? *near : BodyHandle{}};
+    const BodyHandle first = is_left_out ? *far : *near;
+    const std::size_t count = is_left_out ? 1 : 2;
+    EXPECT_EQ(queries.first_hit(ray, filter)->front().body, first);
+    EXPECT_EQ(queries.first_hits({&ray, 1}, filter)->front().body, first);
+    EXPECT_EQ(queries.all_hits(ray, filter)->size(), count);
+    EXPECT_EQ(queries.first_contact(ball, {{9, 0, 0}}, filter)->front().body, first);
+    EXPECT_EQ(queries.in_sphere({}, 6, filter)->bodies.size(), count);
+    EXPECT_EQ(queries.in_box({{-9, -9, -9}}, {{9, 9, 9}}, filter)->bodies.size(), count);
+    EXPECT_EQ(queries.in_shape(large, filter)->bodies.size(), count);
+    EXPECT_EQ(queries.near_shape(ball, 9, filter)->front().body, first);
+    EXPECT_EQ(queries.nearest({}, 2, filter)->size(), count);
+  }
+}
+
 }  // namespace
 }  // namespace continuo::queries_test
