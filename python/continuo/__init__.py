@@ -17,6 +17,7 @@ from .right_hand_side import RightHandSide, expression
 from .shapes import Box, Capsule, Chain, Compound, HeightField, Hull, Part, Sphere, TriangleMesh
 from .solvers import BDF, DOP853, LSODA, OdeSolver, RK23, RK45, Radau
 from .tracing import Traced, trace
+from .vehicles import Vehicle, Wheel
 from .world import Character, World
 
 __all__ = [
@@ -58,6 +59,8 @@ __all__ = [
     "TraceError",
     "Traced",
     "TriangleMesh",
+    "Vehicle",
+    "Wheel",
     "World",
     "__version__",
     "complex_ode",

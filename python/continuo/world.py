@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _continuo, shapes
 from .joints import Joint, Motor, Spring, numbers
+from .vehicles import Vehicle, Wheel, make
 
 __all__ = ["Character", "Contacts", "Near", "RayHit", "RayHits", "Touched", "World"]
 
@@ -794,6 +795,31 @@ class World:
             [radius, height, steepest, highest_step, skin, fall_acceleration],
         )
         return Character(*inner)
+
+    def add_vehicle(self, chassis: int, wheels: Sequence[Wheel]) -> Vehicle:
+        """Puts a body on wheels, which are found on the ground by rays. It is driven before each step.
+
+        Parameters
+        ----------
+        chassis : int
+            A body that is not fixed.
+        wheels : sequence of Wheel
+            At most 64.
+
+        Examples
+        --------
+        >>> world = continuo.World(3, gravity=9.81, motion="fast")
+        >>> world.add_wall([0, 0, 1])
+        >>> body = world.add([0, 0, 0.8], shape=continuo.Box([4, 1.8, 0.6]), mass=1200)
+        >>> hubs = [[x, y, -0.5] for x in (1.3, -1.3) for y in (0.8, -0.8)]
+        >>> car = world.add_vehicle(body, [continuo.Wheel(hub, greatest_drive=300) for hub in hubs])
+        >>> for _ in range(180):
+        ...     car.drive(throttle=1)
+        ...     world.step()
+        >>> world.velocities[0, 0] > 5
+        True
+        """
+        return make(self, chassis, wheels, self._dimension)
 
     def in_sphere(self, centre: ArrayLike, radius: float) -> tuple[list[int], list[int]]:
         """The bodies and the walls that a ball touches."""

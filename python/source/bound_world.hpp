@@ -112,6 +112,8 @@ template <int Dim>
 void bind_joints(WorldClass<Dim>& world);
 template <int Dim>
 void bind_queries(WorldClass<Dim>& world);
+template <int Dim>
+void bind_vehicles(WorldClass<Dim>& world);
 /// @}
 
 extern template void bind_shapes(WorldClass<2>&);
@@ -120,5 +122,7 @@ extern template void bind_joints(WorldClass<2>&);
 extern template void bind_joints(WorldClass<3>&);
 extern template void bind_queries(WorldClass<2>&);
 extern template void bind_queries(WorldClass<3>&);
+extern template void bind_vehicles(WorldClass<2>&);
+extern template void bind_vehicles(WorldClass<3>&);
 
 }  // namespace continuo::python

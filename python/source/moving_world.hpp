@@ -56,6 +56,18 @@ class MovingWorld {
   }
   /// For changes of the bodies themselves: views of before no longer look into the world.
   [[nodiscard]] W& bodies();
+  /// Lets `act` change velocities, spins and constant forces, which the fast motion follows without beginning anew.
+  template <class Act>
+  [[nodiscard]] Status push(Act&& act) {
+    const bool was_as_left = is_as_left();
+    Status status = act(world_);
+    if (!was_as_left || settings_.exact) {
+      changed_ = true;
+    } else if (is_watched_) {
+      remember();
+    }
+    return status;
+  }
   /// A joint, whose limits, spring, motor, target and strength may be changed without a motion that begins anew, unless
   /// its bodies may be asleep; null where there is none.
   [[nodiscard]] Joint<double, Dim>* joint(JointHandle handle);

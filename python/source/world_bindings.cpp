@@ -251,6 +251,7 @@ void bind(py::module_& module, const char* name) {
   python::bind_shapes<Dim>(world);
   python::bind_joints<Dim>(world);
   python::bind_queries<Dim>(world);
+  python::bind_vehicles<Dim>(world);
   world.def(py::init<MotionSettings>(), py::arg("settings"))
       .def("set", [](const P& m, const MotionSettings& settings) { B::idle(m).set(settings); })
       .def("__len__", [](const P& m) { return m->world().size(); })

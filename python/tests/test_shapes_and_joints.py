@@ -20,6 +20,7 @@ from continuo import (
     Sphere,
     Spring,
     TriangleMesh,
+    Wheel,
     World,
 )
 
@@ -210,6 +211,64 @@ def test_a_character_walks_up_steps() -> None:
     position = np.asarray(hero.position)
     assert abs(position[0] - 3.5) < 0.02 and hero.on_ground
     assert abs(position[2] - 0.6) < 0.02 and hero.ground == int(world.bodies[2])
+
+
+def on_wheels(dimension: int, **more: Any) -> tuple[World, Any]:
+    world = floor(dimension)
+    size = [4, 0.6] if dimension == 2 else [4, 1.8, 0.6]
+    body = world.add(np.eye(dimension)[-1] * 0.75, shape=Box(size), mass=1200)
+    sides = [[]] if dimension == 2 else [[0.8], [-0.8]]
+    wheels = [Wheel([x, *side, -0.5], **more) for x in (1.3, -1.3) for side in sides]
+    return world, world.add_vehicle(body, wheels)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_vehicle_is_borne_driven_and_stopped(dimension: int) -> None:
+    world, car = on_wheels(dimension, greatest_drive=300)
+    assert car.wheels == []
+    for _ in range(1200):
+        car.drive()
+        world.step()
+    n = len(car.wheels)
+    for wheel in car.wheels:
+        assert wheel.load == pytest.approx(1200 * G / n, rel=1e-6) and wheel.ground is None
+        assert wheel.compression == pytest.approx(1200 * G / n / 30_000, rel=1e-6)
+    assert np.abs(world.velocities).max() < 1e-5
+    for _ in range(480):
+        car.drive(throttle=1)
+        world.step()
+    before = world.velocities[0, 0]
+    for _ in range(240):
+        car.drive(throttle=1)
+        world.step()
+    gained = n * 300 / 0.35 / (1200 + n * 1.2 / 0.35**2)
+    assert world.velocities[0, 0] - before == pytest.approx(gained, rel=1e-3)
+    other = world.copy()
+    copied = car.copy(other)
+    for of, vehicle in ((world, car), (other, copied)):
+        for _ in range(960):
+            vehicle.drive(brake=1)
+            of.step()
+        assert abs(of.velocities[0, 0]) < 1e-3
+    assert np.array_equal(world.positions, other.positions)
+
+
+def test_a_vehicle_says_what_makes_no_sense() -> None:
+    world, car = on_wheels(3, radius=-1)
+    with pytest.raises(ValueError, match="radius"):
+        car.drive()
+    world, car = on_wheels(3)
+    with pytest.raises(ValueError, match="throttle"):
+        car.drive(2)
+    with pytest.raises(ValueError, match=r"\(3,\)"):
+        world.add_vehicle(0, [Wheel([0, 0])])
+    with pytest.raises(KeyError):
+        world.add_vehicle(99, [])
+    car.drive()
+    car.release()
+    world.remove(car.chassis)
+    with pytest.raises(ValueError, match="no body"):
+        car.drive()
 
 
 def test_sleep_and_joints_that_wake() -> None:
