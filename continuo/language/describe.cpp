@@ -151,6 +151,13 @@ class Writer {
     section("Walls", world.walls, [&](const WallDescription& wall) -> Row {
       return {wall.name, of(wall.normal), "at " + number(wall.offset, start), wall.thin ? "thin" : ""};
     });
+    section("Meshes", world.meshes, [&](const MeshDescription& mesh) -> Row {
+      return {mesh.name,
+              world.dimension == 2
+                  ? fmt::format("chain of {} points", std::max(mesh.points.size(), mesh.corners.size()))
+                  : fmt::format("mesh of {} triangles", mesh.triangles.size()),
+              "at " + of(mesh.position), mesh.is_closed ? "closed" : "", mesh.thin ? "thin" : ""};
+    });
     const auto row_of = [&](const ForceDescription& load) -> Row {
       Row row{"on " + world.bodies[load.body].name};
       for (const NodeId component : load.components)

@@ -29,7 +29,7 @@ std::vector<std::string> joint_measures(std::string_view kind, int dimension, bo
 }
 
 bool WorldDescription::is_rigid() const {
-  return !joints.empty() || std::ranges::any_of(bodies, [](const BodyDescription& body) {
+  return !joints.empty() || !meshes.empty() || std::ranges::any_of(bodies, [](const BodyDescription& body) {
     return body.driven || body.shape.kind != ShapeDescription::Kind::ball || body.traits.any();
   });
 }

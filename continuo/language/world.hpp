@@ -96,6 +96,22 @@ struct WallDescription {
   Span span;
 };
 
+/// A surface that never moves: triangles in space, a chain of segments in the plane. Its corners are those of a file,
+/// or points of the text; `orientation` turns `scale` times a corner, and `position` moves it.
+struct MeshDescription {
+  std::string name;                                       // "wall 2" where it has none
+  std::vector<NodePoint> points{};                        // of a chain in the text; else empty, and ...
+  std::vector<std::array<double, 3>> corners{};           // ... of a file, in the order of the file
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  // by their corners, counter-clockwise seen from outside
+  bool is_closed = false;                                 // of a chain: from the last point back to the first
+  bool thin = false;                                      // free on both sides; else a chain is free on its left
+  NodePoint position;                                     // of the origin of its corners
+  std::array<NodeId, 4> orientation;                      // a unit quaternion; in the plane the first is an angle
+  NodeId scale;                                           // greater than 0
+  MaterialDescription material;
+  Span span;
+};
+
 /// A spring between two bodies, or from a body to a point.
 struct SpringDescription {
   std::size_t a = no_body, b = no_body;  // no body: the point
@@ -150,6 +166,7 @@ struct WorldDescription {
   CombineRuleDescription combine_rule;
   std::vector<BodyDescription> bodies;  // their states are the first of the model, in this order
   std::vector<WallDescription> walls;
+  std::vector<MeshDescription> meshes;
   std::vector<SpringDescription> springs;
   std::vector<JointDescription> joints;
   std::vector<ForceDescription> forces, torques;
@@ -159,7 +176,7 @@ struct WorldDescription {
   std::size_t first_measure = 0;
   Span span;
 
-  /// Whether it has joints, or bodies that are not balls, are driven or have traits.
+  /// Whether it has joints or meshes, or bodies that are not balls, are driven or have traits.
   [[nodiscard]] bool is_rigid() const;
   /// Whether it is rigid and moved by the fast motion: then the exact one is no reference for it.
   [[nodiscard]] bool is_moved_fast() const { return mode.fast && is_rigid(); }

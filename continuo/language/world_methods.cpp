@@ -71,6 +71,7 @@ std::vector<ExactRefusal> exact_refusals(const WorldDescription& world, const Mo
     if (rolls(body.material))
       refusals.push_back({"rolling resistance exists only in worlds of balls without joints", body.span});
   }
+  for (const MeshDescription& mesh : world.meshes) refuse("meshes and no chains", mesh.span);
   for (const JointDescription& joint : world.joints) {
     if (const std::string_view unknown = unknown_of(joint, world.dimension); !unknown.empty()) {
       refuse(unknown, joint.span);

@@ -53,6 +53,7 @@ class BodiesPanel {
   Panel panel() {
     add_ways();
     add_bodies();
+    add_meshes();
     add_walls();
     add_names();
     const auto& columns = run_.motion.columns;
@@ -219,6 +220,25 @@ class BodiesPanel {
     return seen;
   }
 
+  /// Chains, and the edges of triangles where these are not too many.
+  void add_meshes() {
+    constexpr std::size_t most_triangles = 5000;
+    if (world_.meshes.empty()) return;
+    for (const worlds::StaticMeshShape& mesh : worlds::shapes_of(model_, run_.plan.variables).meshes) {
+      if (world_.dimension == 3 && mesh.facets.size() > most_triangles) continue;
+      Curve edges{.label = "", .x = {}, .y = {}, .color = std::string(still_color)};
+      if (world_.dimension == 3) edges.style = Curve::Style::thin_line;
+      for (const auto& [a, b, c] : mesh.facets) {
+        for (const std::uint32_t corner : {a, b, c, a}) {
+          const worlds::Point& p = mesh.corners[corner];
+          edges.x.push_back(world_.dimension == 2 ? p[0] : right_in_space(p[0], p[1]));
+          edges.y.push_back(world_.dimension == 2 ? p[1] : up_in_space(p[0], p[1], p[2]));
+        }
+        edges.x.push_back(NAN), edges.y.push_back(NAN);
+      }
+      panel_.curves.push_back(std::move(edges));
+    }
+  }
   /// Walls of the plane, as far as bodies come.
   void add_walls() {
     if (world_.dimension != 2 || world_.walls.empty()) return;

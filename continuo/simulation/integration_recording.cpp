@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include <continuo/language/world.hpp>
 #include <continuo/simulation/drive/recorded_parts.hpp>
 #include <continuo/simulation/integration_recording.hpp>
 
@@ -132,6 +133,13 @@ std::uint64_t checksum_of_tables(const ModelProgram& program) {
   };
   for (const Table& table : program.tables) add(table);
   for (const TableInput& input : program.step_inputs) add(input.table);
+  if (program.model.has_world()) {
+    for (const MeshDescription& mesh : program.model.world->meshes) {
+      if (mesh.corners.empty()) continue;  // its points stand in the text
+      writer(mesh.corners);
+      writer(mesh.triangles);
+    }
+  }
   return checksum(writer.bytes());
 }
 

@@ -34,7 +34,7 @@ struct RowsOfRecording {
   bool keep_rows = true;  // as in Experiment; that of the recorded one does not matter
 };
 
-/// A checksum of all tables that the model reads.
+/// A checksum of all tables, meshes and chains that the model reads from files.
 [[nodiscard]] std::uint64_t checksum_of_tables(const ModelProgram& program);
 
 }  // namespace continuo::model

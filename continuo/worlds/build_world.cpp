@@ -1,10 +1,11 @@
 // continuo/worlds/build_world.cpp
-// Evaluates the description of a world with its parameters, and adds its bodies and walls.
+// Evaluates the description of a world with its parameters, and adds its bodies, walls and meshes.
 #include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
+#include <continuo/language/described_mesh.hpp>
 #include <continuo/language/described_shape.hpp>
 #include <continuo/language/text/words.hpp>
 #include <continuo/status/require.hpp>
@@ -84,6 +85,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
         values.want(body.traits.gravity_scale), values.want(body.traits.damping), values.want(body.traits.spin_damping);
   for (const auto& wall : text.walls)
     values.want(wall.normal, axes), values.want(wall.offset), values.want(wall.material);
+  for (const auto& mesh : text.meshes) values.want(model::mesh_nodes(mesh, Dim)), values.want(mesh.material);
   for (const auto& spring : text.springs) {
     if (spring.b == model::no_body) values.want(spring.point, axes);
     values.want(spring.stiffness), values.want(spring.length), values.want(spring.damping);
@@ -140,6 +142,15 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     made.offset /= length(made.normal);
     if (const Status status = world.add_wall(made); !status) {
       built.status = invalid_input("`" + wall.name + "`: " + status.message);
+      return built;
+    }
+  }
+  for (const auto& mesh : text.meshes) {
+    MeshDefinition<double, Dim> made{
+        .shape = model::described_mesh<Dim>(mesh, values.next(model::mesh_nodes(mesh, Dim).size()))};
+    made.material = values.next_material();
+    if (const auto added = world.add_mesh(made); !added) {
+      built.status = invalid_input("`" + mesh.name + "`: " + added.status().message);
       return built;
     }
   }

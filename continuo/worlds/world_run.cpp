@@ -101,6 +101,7 @@ class Moving final : public WorldRun {
 
   const std::vector<BodyShape>& bodies() const override { return shapes_.bodies; }
   const std::vector<WallShape>& walls() const override { return shapes_.walls; }
+  const std::vector<StaticMeshShape>& meshes() const override { return shapes_.meshes; }
   const std::vector<SpringShape>& springs() const override { return shapes_.springs; }
   const std::vector<BodyForm>& forms() const override { return shapes_.forms; }
   const std::vector<JointShape>& joints() const override { return shapes_.joints; }
@@ -163,7 +164,7 @@ class Moving final : public WorldRun {
     make_motion();
     collisions_apart_ += static_cast<std::size_t>(model::collisions_of(*model().world, state)) - collisions();
   }
-  bool is_rigid() const override { return !joints_.empty() || world_.has_solids(); }
+  bool is_rigid() const override { return !joints_.empty() || world_.has_solids() || world_.has_meshes(); }
   void pull(std::optional<std::pair<std::size_t, Point>> body_and_target) override {
     if (!body_and_target) return drop_hand();
     const auto& [body, target] = *body_and_target;
@@ -240,8 +241,9 @@ class Moving final : public WorldRun {
     World<double, Dim> found = world_;
     if (Status status = continuo::restore(saved.bodies, found); !status) return status;
     if (found.size() != world_.size() || found.walls().size() != world_.walls().size() ||
+        found.meshes().size() != world_.meshes().size() || found.has_meshes() != world_.has_meshes() ||
         found.springs.size() < model().world->springs.size() || found.joint_count() < world_.joint_count())
-      return invalid_input("it has other bodies, walls, springs or joints");
+      return invalid_input("it has other bodies, walls, meshes, springs or joints");
     if (found.time != saved.time) return invalid_input("its bodies are at another time");
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
       return invalid_input("a state of its equations is not finite");
@@ -439,8 +441,9 @@ class Moving final : public WorldRun {
       if (contacts_.size() >= options_.most_contacts) return;
       contacts_.push_back({.change = event.change,
                            .a = world_.index(event.a),
-                           .b = event.with_wall() ? model::no_body : world_.index(event.b),
+                           .b = event.with_wall() || event.with_mesh() ? model::no_body : world_.index(event.b),
                            .wall = event.with_wall() ? event.wall : model::no_body,
+                           .mesh = event.with_mesh() ? event.mesh : model::no_body,
                            .point = point_of<Dim>(event.point),
                            .impulse = event.impulse,
                            .time = event.time});
@@ -491,7 +494,9 @@ WorldOptions options_of(const model::Plan& plan) {
 }
 
 std::string WorldRun::name_of(const Contact& contact) const {
-  const std::string& other = contact.b == model::no_body ? walls()[contact.wall].name : bodies()[contact.b].name;
+  const std::string& other = contact.b != model::no_body      ? bodies()[contact.b].name
+                             : contact.mesh != model::no_body ? meshes()[contact.mesh].name
+                                                              : walls()[contact.wall].name;
   return bodies()[contact.a].name + (contact.change == ContactChange::end ? " leaves " : " meets ") + other;
 }
 

@@ -64,6 +64,14 @@ struct WallShape {
   double offset;
   bool thin = false;  // free on both sides
 };
+/// A surface that never moves. Its facets are triangles, counter-clockwise seen from the free side; in the plane
+/// segments of two corners, whose last number repeats the second one, with what is free on their right.
+struct StaticMeshShape {
+  std::string name;
+  std::vector<Point> corners;                        // places in the world
+  std::vector<std::array<std::uint32_t, 3>> facets;  // by their corners
+  bool thin = false;                                 // free on both sides
+};
 /// The ends of a spring.
 struct SpringShape {
   std::size_t a, b;  // bodies; b is model::no_body where it ends at the point
@@ -85,8 +93,9 @@ struct JointShape {
 /// An impact, or the beginning or end of a lasting contact.
 struct Contact {
   ContactChange change;
-  std::size_t a, b;  // bodies; b is model::no_body where it was a wall
-  std::size_t wall;  // the number of the wall, in that case
+  std::size_t a, b;  // bodies; b is model::no_body where it was a wall or a mesh
+  std::size_t wall;  // the number of the wall; model::no_body where it was none
+  std::size_t mesh;  // the number of the mesh; model::no_body where it was none
   Point point;
   double impulse;  // along the normal; of a lasting contact the whole impulse, at its end
   double time;
@@ -137,6 +146,8 @@ class WorldRun {
   [[nodiscard]] virtual const std::vector<BodyShape>& bodies() const = 0;
   /// The walls, in the order of the model.
   [[nodiscard]] virtual const std::vector<WallShape>& walls() const = 0;
+  /// The surfaces that never move, in the order of the model.
+  [[nodiscard]] virtual const std::vector<StaticMeshShape>& meshes() const = 0;
   /// The springs, in the order of the model.
   [[nodiscard]] virtual const std::vector<SpringShape>& springs() const = 0;
   /// The forms of bodies that are not balls, each once.
@@ -171,7 +182,7 @@ class WorldRun {
   /// Draws a body's centre to a point by a force, as a hand does, from now on until it is let go; nothing: lets it go.
   /// Only where `is_rigid`.
   virtual void pull(std::optional<std::pair<std::size_t, Point>> body_and_target) = 0;
-  /// Whether there are joints, or bodies that are not balls: then a hand does not set bodies, it pulls.
+  /// Whether there are joints, meshes, or bodies that are not balls: then a hand does not set bodies, it pulls.
   [[nodiscard]] virtual bool is_rigid() const = 0;
   /// Moves one body elsewhere, for example where a user drags it.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;

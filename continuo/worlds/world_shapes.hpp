@@ -1,13 +1,17 @@
-// The shapes of a world for display: names, sizes, surfaces and constant positions of its bodies, walls, springs and
-// joints.
+// The shapes of a world for display: names, sizes, surfaces and constant positions of its bodies, walls,
+// meshes, springs and joints.
 #pragma once
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
+#include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/language/model.hpp>
 #include <continuo/language/world.hpp>
@@ -15,10 +19,11 @@
 
 namespace continuo::worlds {
 
-/// The bodies, walls, springs and joints of a world, without their motion.
+/// The bodies, walls, meshes, springs and joints of a world, without their motion.
 struct Shapes {
   std::vector<BodyShape> bodies;
   std::vector<WallShape> walls;
+  std::vector<StaticMeshShape> meshes;
   std::vector<SpringShape> springs;
   std::vector<BodyForm> forms;
   std::vector<JointShape> joints;
@@ -37,6 +42,20 @@ template <int Dim>
 [[nodiscard]] BodyForm form_of(const Solid<double, 2>& solid);
 [[nodiscard]] BodyForm form_of(const Solid<double, 3>& solid);
 /// @}
+
+/// The facets of a static mesh.
+template <int Dim>
+[[nodiscard]] StaticMeshShape shape_of(const StaticMesh<double, Dim>& mesh, const std::string& name) {
+  StaticMeshShape shape{.name = name, .corners = {}, .facets = {}, .thin = mesh.is_two_sided()};
+  std::uint32_t most = 0;
+  for (std::uint32_t facet = 0; facet < mesh.size(); ++facet) {
+    const auto numbers = mesh.numbers(facet);
+    shape.facets.push_back({numbers[0], numbers[1], numbers.back()});
+    most = std::max(most, std::ranges::max(numbers));
+  }
+  for (std::uint32_t corner = 0; corner <= most; ++corner) shape.corners.push_back(point_of<Dim>(mesh.corner(corner)));
+  return shape;
+}
 
 /// The shapes of a model's world with these values of its parameters; nothing where they make none.
 [[nodiscard]] Shapes shapes_of(const model::Model& model, std::span<const double> variables);
@@ -89,6 +108,8 @@ template <int Dim>
     const Wall<double, Dim>& wall = world.walls()[w];
     shapes.walls.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset, wall.thin});
   }
+  for (std::size_t m = 0; m < world.meshes().size(); ++m)
+    shapes.meshes.push_back(shape_of(*world.meshes()[m].geometry, text.meshes[m].name));
   for (std::size_t k = 0; k < world.springs.size(); ++k) {
     const auto* end = std::get_if<Vector<double, Dim>>(&world.springs[k].b);
     shapes.springs.push_back({text.springs[k].a, text.springs[k].b, end ? point_of<Dim>(*end) : Point{}});

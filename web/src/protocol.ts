@@ -32,6 +32,17 @@ export interface Form {
   corners: number[][];
   faces: number[][];
 }
+/**
+ * A surface that never moves. Its facets are triangles, counter-clockwise seen from the free side; in the plane segments,
+ * with what is free on the right of the way from the first corner to the second.
+ */
+export interface StaticMesh {
+  name: string;
+  corners: number[][];
+  facets: number[][];
+  /** Both sides are free. */
+  thin: boolean;
+}
 /** Where it holds its bodies in their frames; of the world, where `second` is null, in the world. */
 export interface Joint {
   name: string;
@@ -52,6 +63,7 @@ export interface Bodies {
   names?: string[];
   walls: { normal: number[]; offset: number; thin?: boolean }[];
   containers: { lower: number[]; upper: number[] }[];
+  meshes?: StaticMesh[];
   /** Between bodies a and b, or from body a to a point. */
   springs?: { a: number; b: number | null; point: number[] | null }[];
   forms?: Form[];

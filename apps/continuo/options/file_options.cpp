@@ -196,6 +196,20 @@ std::string fault_of_files(const std::vector<FileOption>& options, bool prints_d
   return Files(options).fault(prints_data);
 }
 
+namespace {
+
+/// The files of meshes and chains, also of those in families.
+void add_files_of(const std::vector<model::ast::WorldItem>& items, const auto& add) {
+  for (const model::ast::WorldItem& item : items) {
+    if (const auto* family = std::get_if<model::ast::WorldFamily>(&item.node)) add_files_of(family->body, add);
+    const auto* mesh = std::get_if<model::ast::WorldMesh>(&item.node);
+    const auto* file = mesh ? std::get_if<model::ast::Text>(&mesh->corners.node) : nullptr;
+    if (file) add(file->value);
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> files_of_text(const std::string& path, const std::string& text) {
   std::vector<std::string> files;
   const auto add = [&](const std::string& file) {
@@ -204,6 +218,7 @@ std::vector<std::string> files_of_text(const std::string& path, const std::strin
   for (const model::ast::Statement& statement : model::parse(model::Source(path, text)).model.statements) {
     if (const auto* table = std::get_if<model::ast::Table>(&statement.node)) add(table->file);
     if (const auto* input = std::get_if<model::ast::Input>(&statement.node)) add(input->file.value_or(""));
+    if (const auto* world = std::get_if<model::ast::World>(&statement.node)) add_files_of(world->items, add);
   }
   return files;
 }

@@ -50,7 +50,7 @@ inline constexpr std::array<std::string_view, 7> options_that_write{"-o",       
 /// standard output is for data already.
 [[nodiscard]] std::string fault_of_files(const std::vector<FileOption>& options, bool prints_data);
 
-/// The files that the text of a model names: its tables, and the values of its inputs.
+/// The files that the text of a model names: its tables, the values of its inputs, its meshes and chains.
 [[nodiscard]] std::vector<std::string> files_of_model(const std::string& path);
 [[nodiscard]] std::vector<std::string> files_of_text(const std::string& path, const std::string& text);
 

@@ -1,4 +1,4 @@
-// gnuplot commands for spheres, discs, polygons, polyhedra, walls, springs and joints.
+// gnuplot commands for spheres, discs, polygons, polyhedra, walls, meshes, springs and joints.
 #include <array>
 #include <cstdint>
 #include <numeric>
@@ -28,6 +28,13 @@ std::uint32_t mixed(std::uint32_t a, std::uint32_t b, double part) {
   return color;
 }
 
+constexpr Point sun = {-0.150, 0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left; of length 1
+
+/// The colour of a face, by the cosine between its normal and the light.
+std::uint32_t lit_by(std::uint32_t color, double lit) {
+  return lit > 0.5 ? mixed(color, white, 0.5 * (lit - 0.5)) : mixed(color, black, 0.5 * (0.5 - lit));
+}
+
 std::string circle(Flat at, double radius, std::uint32_t color) {
   return fmt::format("{:.7g} {:.7g} {:.7g} {}\n", at.x, at.y, radius, color);
 }
@@ -52,6 +59,7 @@ BodyPictures::BodyPictures(const worlds::WorldRun& world)
     : dimension_(world.dimension()),
       shapes_(world.bodies()),
       walls_(world.walls()),
+      meshes_(world.meshes()),
       springs_(world.springs()),
       forms_(world.forms()),
       joints_(world.joints()) {
@@ -156,6 +164,64 @@ void BodyPictures::draw_walls(const PictureFrame& frame, PictureParts& parts) co
   }
 }
 
+void BodyPictures::draw_meshes(const PictureFrame& frame, PictureParts& parts) const {
+  for (const worlds::StaticMeshShape& mesh : meshes_)
+    dimension_ == 2 ? draw_chain(mesh, frame, parts) : draw_triangles(mesh, parts);
+}
+
+/// A line, and where one side is not free a band on that side.
+void BodyPictures::draw_chain(const worlds::StaticMeshShape& chain, const PictureFrame& frame,
+                              PictureParts& parts) const {
+  const double width = 0.025 * (frame.high - frame.low);
+  std::string band, line;
+  for (const auto& [first, second, last] : chain.facets) {
+    const Flat a = flat(chain.corners[first]), b = flat(chain.corners[second]);
+    const double size = std::hypot(b.x - a.x, b.y - a.y);
+    const Flat back{-(b.y - a.y) / size * width, (b.x - a.x) / size * width};  // to the left of its way
+    for (const Flat p : {a, b, Flat{b.x + back.x, b.y + back.y}, Flat{a.x + back.x, a.y + back.y}, a})
+      band += fmt::format("{:.7g} {:.7g}\n", p.x, p.y);
+    band += '\n';
+    line += fmt::format("{:.7g} {:.7g}\n{:.7g} {:.7g}\n\n", a.x, a.y, b.x, b.y);
+  }
+  if (!chain.thin) parts.curve(fmt::format("using 1:2 with filledcurves closed fc rgb '{}'", wall_color), band);
+  parts.curve(fmt::format("with lines lw 2 lc rgb '{}'", edge_color), line);
+}
+
+/// From the farthest to the nearest, lit as the faces of bodies; the backs, which are open, are darker.
+void BodyPictures::draw_triangles(const worlds::StaticMeshShape& mesh, PictureParts& parts) const {
+  constexpr std::size_t few = 5000;  // of more, edges would hide the faces
+  std::vector<std::size_t> order(mesh.facets.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto corner = [&](std::size_t facet, std::size_t k) -> const Point& {
+    return mesh.corners[mesh.facets[facet][k]];
+  };
+  std::ranges::sort(order, {}, [&](std::size_t facet) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point& p = corner(facet, k);
+      sum += nearness_of(p[0], p[1], p[2]);
+    }
+    return sum;
+  });
+  std::string areas, edges;
+  for (const std::size_t facet : order) {
+    const Point &a = corner(facet, 0), &b = corner(facet, 1), &c = corner(facet, 2);
+    const Point u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
+    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const bool is_front = nearness_of(normal[0], normal[1], normal[2]) > 0;
+    const double lit = dot(normal, sun) / std::sqrt(dot(normal, normal));
+    const std::uint32_t color = is_front || mesh.thin ? lit_by(0xD9D9D9, is_front ? lit : -lit) : still;
+    for (const std::size_t k : {0U, 1U, 2U, 0U}) {
+      const Flat at = flat(corner(facet, k));
+      areas += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, color);
+      edges += fmt::format("{:.7g} {:.7g}\n", at.x, at.y);
+    }
+    areas += '\n', edges += '\n';
+  }
+  parts.curve(as_polygons, areas);
+  if (mesh.facets.size() <= few) parts.curve(fmt::format("with lines lw 0.5 lc rgb '{}'", edge_color), edges);
+}
+
 void BodyPictures::draw_springs(const live::Bodies& bodies, PictureParts& parts) const {
   if (springs_.empty()) return;
   std::string lines;
@@ -231,7 +297,6 @@ void BodyPictures::draw_polygons(const live::Bodies& bodies, PictureParts& parts
 
 /// The faces that look at us, lit from the upper left. They do not hide each other, since it is convex.
 std::string BodyPictures::polyhedron(const live::Bodies& bodies, std::size_t i) const {
-  constexpr Point light = {-0.150, 0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left; of length 1
   const worlds::BodyForm& form = forms_[shapes_[i].form];
   std::string text;
   for (const std::vector<std::uint32_t>& face : form.faces) {
@@ -241,9 +306,8 @@ std::string BodyPictures::polyhedron(const live::Bodies& bodies, std::size_t i) 
         turned_by(bodies, i, {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
     const double size = std::sqrt(dot(normal, normal));
     if (!(size > 0) || !(nearness_of(normal[0], normal[1], normal[2]) > 0)) continue;
-    const double lit = dot(normal, light) / size;
-    const std::uint32_t color =
-        lit > 0.5 ? mixed(color_of(i), white, 0.5 * (lit - 0.5)) : mixed(color_of(i), black, 0.5 * (0.5 - lit));
+    const double lit = dot(normal, sun) / size;
+    const std::uint32_t color = lit_by(color_of(i), lit);
     for (std::size_t k = 0; k <= face.size(); ++k) {
       const Flat at = flat(placed(bodies, i, form.corners[face[k % face.size()]]));
       text += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, color);

@@ -20,6 +20,7 @@ class BodyPictures {
   void take(const live::Bodies& bodies, PictureFrame& frame);
   /// In the background, what does not move.
   void draw_walls(const PictureFrame& frame, PictureParts& parts) const;
+  void draw_meshes(const PictureFrame& frame, PictureParts& parts) const;
   void draw(const live::Bodies& bodies, PictureParts& parts) const;
 
  private:
@@ -38,10 +39,13 @@ class BodyPictures {
   void draw_in_space(const live::Bodies& bodies, PictureParts& parts) const;
   std::vector<Flat> wall_in_plane(const worlds::WallShape& wall, const PictureFrame& frame) const;
   std::vector<Flat> wall_in_space(const worlds::WallShape& wall) const;
+  void draw_chain(const worlds::StaticMeshShape& chain, const PictureFrame& frame, PictureParts& parts) const;
+  void draw_triangles(const worlds::StaticMeshShape& mesh, PictureParts& parts) const;
 
   int dimension_;
   std::vector<worlds::BodyShape> shapes_;
   std::vector<worlds::WallShape> walls_;
+  std::vector<worlds::StaticMeshShape> meshes_;
   std::vector<worlds::SpringShape> springs_;
   std::vector<worlds::BodyForm> forms_;
   std::vector<worlds::JointShape> joints_;

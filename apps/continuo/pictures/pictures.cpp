@@ -67,6 +67,7 @@ class ScenePictures {
     PictureParts parts;
     if (bodies_) {
       bodies_->draw_walls(frame_, parts);
+      bodies_->draw_meshes(frame_, parts);
       bodies_->draw(*slices_[number]->bodies, parts);
     }
     draw_scene(shown_, slices_, number, frame_, parts);

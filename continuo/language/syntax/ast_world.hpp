@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -33,6 +34,17 @@ struct WorldSetting {
 struct WorldWall {
   std::optional<Identifier> name;
   Expression normal, offset;
+  WorldAttributes attributes;
+};
+
+/// `wall hills mesh "terrain.obj" at (0, 0, 1) scale 2`, `wall track chain (0, 0) (4, 0) (6, 1) friction 0.8`,
+/// `wall track chain from "profile.csv"`, `wall track chain for k in 0..9 { (k, h[k]) }`: a surface of triangles or
+/// segments that never moves.
+struct WorldMesh {
+  std::optional<Identifier> name;
+  Identifier kind;                                     // `mesh` or `chain`
+  std::optional<std::pair<Identifier, Range>> family;  // for each index of this range a chain goes on with its points
+  Expression corners;                                  // a Text: the name of a file; or of a chain a List of points
   WorldAttributes attributes;
 };
 
@@ -109,8 +121,8 @@ struct WorldFamily {
 };
 
 struct WorldItem {
-  std::variant<WorldSetting, WorldWall, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings, WorldJoint,
-               WorldPart, WorldFix, WorldIgnore, WorldFamily>
+  std::variant<WorldSetting, WorldWall, WorldMesh, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings,
+               WorldJoint, WorldPart, WorldFix, WorldIgnore, WorldFamily>
       node;
   Span span;
 };

@@ -236,7 +236,12 @@ class Parser {
   [[nodiscard]] ast::Force parse_force(bool is_torque);
   [[nodiscard]] ast::WorldItem parse_world_item();
   [[nodiscard]] ast::WorldSetting parse_world_setting(ast::Identifier word);
-  [[nodiscard]] ast::WorldWall parse_world_wall();
+  /// A half-space, a mesh or a chain.
+  [[nodiscard]] decltype(ast::WorldItem::node) parse_world_wall();
+  [[nodiscard]] ast::WorldWall parse_half_space(std::optional<ast::Identifier> name, ast::Expression normal);
+  [[nodiscard]] ast::WorldMesh parse_world_mesh(std::optional<ast::Identifier> name);
+  [[nodiscard]] ast::WorldMesh parse_chain(std::optional<ast::Identifier> name, ast::Identifier kind,
+                                           std::optional<ast::Expression> first = std::nullopt);
   [[nodiscard]] ast::WorldContainer parse_world_container();
   [[nodiscard]] ast::WorldBodies parse_world_bodies();
   [[nodiscard]] ast::WorldSpring parse_world_spring();
@@ -253,7 +258,8 @@ class Parser {
   void skip_to_attribute(std::span<const std::string_view> known);
   [[nodiscard]] ast::Expression parse_world_value(std::string_view word);
   [[nodiscard]] ast::Expression parse_world_name(std::string_view word);
-  [[nodiscard]] ast::Expression parse_points(std::string_view example);
+  [[nodiscard]] ast::Expression parse_points(std::string_view example,
+                                             std::optional<ast::Expression> first = std::nullopt);
   [[nodiscard]] ast::Expression parse_limits();
   [[nodiscard]] ast::Expression parse_most(std::string_view word);
 

@@ -1,6 +1,8 @@
 // Joints in `world { ... }`: what they connect, and values that only they and hulls have.
 #include <array>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,13 +67,21 @@ ast::WorldJoint Parser::parse_world_joint(ast::Identifier kind) {
 }
 
 /// Points one after the other. A unit is that of all points before it that have none.
-Expression Parser::parse_points(Word example) {
-  const std::uint32_t begin = current().span.begin;
-  if (!at(TokenKind::open_round)) unexpected("points", std::string(example));
+Expression Parser::parse_points(Word example, std::optional<Expression> first) {
+  const std::uint32_t begin = first ? first->span.begin : current().span.begin;
+  if (!first && !at(TokenKind::open_round)) unexpected("points", std::string(example));
   ast::List points;
   std::size_t without_unit = 0;
-  while (at(TokenKind::open_round)) {
-    points.items.push_back(parse_point_with_unit());
+  // Nothing in a world begins with a bracket: a line that does goes on with the points.
+  const auto goes_on = [&] {
+    std::size_t next = 0;
+    while (look(next).kind == TokenKind::line_end) ++next;
+    return look(next).kind == TokenKind::open_round;
+  };
+  while (first || goes_on()) {
+    while (!first && accept(TokenKind::line_end)) {
+    }
+    points.items.push_back(first ? *std::exchange(first, std::nullopt) : parse_point_with_unit());
     const auto* quantity = std::get_if<ast::Quantity>(&points.items.back().node);
     if (!quantity) continue;
     const ast::Unit unit = quantity->unit;

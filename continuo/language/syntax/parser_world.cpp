@@ -23,6 +23,10 @@ constexpr std::array<Word, 25> item_words = {
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
+constexpr std::array<Word, 8> mesh_words = {"at",          "angle",    "axis",    "scale",
+                                            "restitution", "friction", "rolling", "thin"};
+constexpr std::array<Word, 8> chain_words = {"at",          "angle",    "scale",   "closed",
+                                             "restitution", "friction", "rolling", "thin"};
 constexpr std::array<Word, 2> attraction_words = {"softening", "opening"};
 constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
@@ -50,9 +54,9 @@ bool is_one_of(Word word, std::span<const Word> words) {
 }
 
 bool is_flag(Word word) {
-  constexpr std::array<Word, 13> flags = {"fixed",         "driven",        "diagonal",     "thin",     "collide",
-                                          "sensor",        "locked_x",      "locked_y",     "locked_z", "locked_turn",
-                                          "locked_turn_x", "locked_turn_y", "locked_turn_z"};
+  constexpr std::array<Word, 14> flags = {"fixed",       "driven",        "diagonal",      "thin",         "closed",
+                                          "collide",     "sensor",        "locked_x",      "locked_y",     "locked_z",
+                                          "locked_turn", "locked_turn_x", "locked_turn_y", "locked_turn_z"};
   return is_one_of(word, flags);
 }
 bool takes_point(Word word) {
@@ -208,14 +212,67 @@ std::optional<ast::Identifier> Parser::parse_name_of_wall() {
   return parse_identifier("a name, or a point such as (0, 1)");
 }
 
-ast::WorldWall Parser::parse_world_wall() {
+/// A word before a point is the name of a half-space, and `chain` as well; before a second point it is what is built.
+decltype(ast::WorldItem::node) Parser::parse_world_wall() {
+  const Token& next = look(1);
+  const bool is_word = next.kind == TokenKind::name && (spelled(next) == "from" || spelled(next) == "for");
+  const bool has_no_name = (at_word("mesh") && next.kind == TokenKind::text) ||
+                           (at_word("chain") && (next.kind == TokenKind::open_round || is_word));
+  std::optional<ast::Identifier> name = has_no_name ? std::nullopt : parse_name_of_wall();
+  if (at_word("mesh")) return parse_world_mesh(std::move(name));
+  if (!at_word("chain")) return parse_half_space(std::move(name), parse_point());
+  ast::Identifier kind = parse_identifier("`chain`");
+  if (!at(TokenKind::open_round)) return parse_chain(std::move(name), std::move(kind));
+  Expression first = parse_point_with_unit();
+  if (!name && at_word("at") && !std::holds_alternative<ast::Quantity>(first.node))
+    return parse_half_space(std::move(kind), std::move(first));
+  return parse_chain(std::move(name), std::move(kind), std::move(first));
+}
+
+ast::WorldWall Parser::parse_half_space(std::optional<ast::Identifier> name, Expression normal) {
   ast::WorldWall wall;
-  wall.name = parse_name_of_wall();
-  wall.normal = parse_point();
+  wall.name = std::move(name);
+  wall.normal = std::move(normal);
   expect_word("at", "`at` and how far it is from the origin, as in wall (0, 1) at 0");
   wall.offset = parse_sum_of_terms();
   wall.attributes = parse_world_attributes("a wall", wall_words);
   return wall;
+}
+
+ast::WorldMesh Parser::parse_world_mesh(std::optional<ast::Identifier> name) {
+  ast::WorldMesh mesh;
+  mesh.name = std::move(name);
+  mesh.kind = parse_identifier("`mesh`");
+  const Span span = current().span;
+  mesh.corners = {ast::Text{parse_text("the name of a file, as in mesh \"hills.obj\"")}, span};
+  mesh.attributes = parse_world_attributes("a mesh", mesh_words);
+  return mesh;
+}
+
+/// Behind `chain` and, where it begins with a point, behind that.
+ast::WorldMesh Parser::parse_chain(std::optional<ast::Identifier> name, ast::Identifier kind,
+                                   std::optional<Expression> first) {
+  constexpr Word example = "as in chain (0, 0) (4, 0) (6, 1)";
+  ast::WorldMesh chain;
+  chain.name = std::move(name);
+  chain.kind = std::move(kind);
+  if (!first && accept_word("from")) {
+    const Span span = current().span;
+    chain.corners = {ast::Text{parse_text("the name of a file, as in chain from \"hills.csv\"")}, span};
+  } else if (!first && accept_word("for")) {
+    chain.family = parse_index();
+    expect(TokenKind::open_brace, "`{` and the points for each, as in for k in 0..9 { (k, h[k]) }");
+    indices_.push_back(chain.family->first.text);
+    accept(TokenKind::line_end);
+    chain.corners = parse_points("as in for k in 0..9 { (k, h[k]) }");
+    indices_.pop_back();
+    accept(TokenKind::line_end);
+    expect(TokenKind::close_brace, "a further point, or `}`");
+  } else {
+    chain.corners = parse_points(example, std::move(first));
+  }
+  chain.attributes = parse_world_attributes("a chain", chain_words);
+  return chain;
 }
 
 ast::WorldContainer Parser::parse_world_container() {

@@ -208,12 +208,16 @@ refuses what it does not know, and the fast mode has its usual integrator.)"},
          R"(`drag` lets the mouse move the states that a point depends on: ball (x, y) drag, or for a pendulum
 ball (l*sin(theta), -l*cos(theta)) drag. A point that depends on no state cannot be dragged.)"},
     Code{"E270", "a file does not exist",
-         R"(Files of tables and inputs are found relative to the folder of the model.)"},
+         R"(Files of tables, inputs, meshes and chains are found relative to the folder of the model.)"},
     Code{"E271", "a table and a number are mixed up",
          R"(table NAME from "file.csv" is read by interp(NAME, x), and by nothing else.)"},
     Code{"E272", "a file is not a table",
          R"(A table has columns of numbers, separated by commas, semicolons or blanks; the first column increases.
 The first line may contain names. An input reads the column with its own name, or the second one.)"},
+    Code{"E273", "a file is not a mesh",
+         R"(A mesh of a world is read from a Wavefront OBJ file: lines `v x y z` are its corners, lines `f 1 2 3` its
+faces, by the numbers of their corners, which go counter-clockwise seen from the side that is free. Faces of more corners
+are cut into triangles. Each face has an area; other lines have no meaning here.)"},
     Code{"E280", "there is nothing to simulate",
          R"(The smallest model is an equation with its initial value: x' = -x and x(0) = 1.)"},
     Code{"E281", "a check cannot be made",

@@ -129,6 +129,14 @@ json bodies_of(const worlds::WorldRun* world) {
   for (const worlds::WallShape& wall : world->walls())
     walls.push_back(
         {{"normal", point_of(wall.normal, world->dimension())}, {"offset", wall.offset}, {"thin", wall.thin}});
+  json meshes = json::array();
+  for (const worlds::StaticMeshShape& mesh : world->meshes()) {
+    json corners = json::array(), facets = json::array();
+    for (const worlds::Point& corner : mesh.corners) corners.push_back(point_of(corner, world->dimension()));
+    for (const auto& [a, b, c] : mesh.facets)
+      facets.push_back(world->dimension() == 2 ? json::array({a, b}) : json::array({a, b, c}));
+    meshes.push_back({{"name", mesh.name}, {"corners", corners}, {"facets", facets}, {"thin", mesh.thin}});
+  }
   json springs = json::array();
   for (const worlds::SpringShape& spring : world->springs()) {
     const bool to_body = spring.b != model::no_body;
@@ -158,6 +166,7 @@ json bodies_of(const worlds::WorldRun* world) {
           {"radius", radius},
           {"names", names},
           {"walls", walls},
+          {"meshes", meshes},
           {"containers", json::array()},
           {"springs", springs},
           {"forms", forms},

@@ -1,9 +1,10 @@
-// The bodies of a world, its joints, walls and containers.
+// The bodies of a world, its joints, walls, containers and meshes.
 import * as three from "three";
 import { channels, curveColors, modelColor, type Theme } from "../palette";
-import type { Bodies } from "../protocol";
+import type { Bodies, StaticMesh } from "../protocol";
 import { spring, springPoints, type Point } from "./curves";
 import { gridStep, include, type Bounds } from "./fit";
+import { bandOf, chainLines, surfaceOf } from "./ground";
 import { JointMarks } from "./joints";
 import { Polyline } from "./polyline";
 import { Solids } from "./solids";
@@ -79,6 +80,7 @@ export class BodiesView {
     const box = boxOfWalls(bodies.walls, bodies.dimension);
     if (box && !ghost) this.outline(box.lower, box.upper, line, flat);
     for (const { normal, offset, thin } of ghost || box ? [] : bodies.walls) this.wall(normal, offset, line, flat, thin ?? false);
+    for (const mesh of ghost ? [] : (bodies.meshes ?? [])) this.ground(mesh, line, flat);
     this.springs = (ghost || (bodies.springs?.length ?? 0) > mostSprings ? [] : (bodies.springs ?? [])).map((ends) => {
       const coil = new Polyline({ color: line, width: 2, flat, order: 3 });
       this.lines.push(coil);
@@ -172,11 +174,11 @@ export class BodiesView {
       for (const z of [z0, z1]) this.add([x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z, x0, y0, z], color, flat, width, opacity);
       for (const [x, y] of [[x0, y0], [x1, y0], [x1, y1], [x0, y1]] as const) this.add([x, y, z0, x, y, z1], color, flat, width, opacity);
     }
-    this.ground([x0, y0], [x1, y1], z0, color);
+    this.bottom([x0, y0], [x1, y1], z0, color);
   }
 
   /** The bottom of a box, ruled as the plane is: it gives the eye depth. */
-  private ground([x0, y0]: [number, number], [x1, y1]: [number, number], z: number, color: string): void {
+  private bottom([x0, y0]: [number, number], [x1, y1]: [number, number], z: number, color: string): void {
     const surface = new three.Mesh(new three.PlaneGeometry(x1 - x0, y1 - y0), new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.1, side: three.DoubleSide, depthWrite: false }));
     surface.position.set((x0 + x1) / 2, (y0 + y1) / 2, z);
     surface.renderOrder = -8;
@@ -210,6 +212,23 @@ export class BodiesView {
     mesh.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), new three.Vector3(n[0], n[1], n[2]));
     this.surfaces.push(mesh);
     this.group.add(mesh);
+  }
+
+  /** A chain is a line, with a band behind it where only one side is free; a mesh has faces. */
+  private ground(mesh: StaticMesh, color: string, flat: boolean): void {
+    if (!flat) {
+      const surface = surfaceOf(mesh, color);
+      this.surfaces.push(...surface.parts);
+      this.group.add(surface);
+      return;
+    }
+    for (const points of chainLines(mesh)) this.add(points, color, flat);
+    if (mesh.thin) return;
+    const geometry = new three.BufferGeometry().setAttribute("position", new three.Float32BufferAttribute(bandOf(mesh, this.size / 25), 3));
+    const band = new three.Mesh(geometry, new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.16, depthTest: false, depthWrite: false, side: three.DoubleSide }));
+    band.renderOrder = -9;
+    this.surfaces.push(band);
+    this.group.add(band);
   }
 
   /** What is behind a wall is solid. */

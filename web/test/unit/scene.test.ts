@@ -3,11 +3,12 @@ import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/c
 import { boundsOfItems, distanceFor, gridStep, heightFor, Interest, type Bounds } from "../../src/scene/fit";
 import { boxOfWalls } from "../../src/scene/bodies";
 import { endsOf, isBroken, linesOf } from "../../src/scene/joints";
+import { bandOf, chainLines, trianglesOf } from "../../src/scene/ground";
 import { edgesOf, entry, normalOf, placed, rotationOf } from "../../src/scene/solids";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
 import { curveColors } from "../../src/palette";
-import type { Bodies, Form, Item, Joint } from "../../src/protocol";
+import type { Bodies, Form, Item, Joint, StaticMesh } from "../../src/protocol";
 
 const item = (shape: Item["shape"], numbers: Item["numbers"]): Item => ({ shape, numbers, drag: false });
 
@@ -167,4 +168,26 @@ test("a ray enters a cube at its surface, and a point of the plane is in a polyg
   const triangle: Form = { corners: [[0, 0], [1, 0], [0, 1]], faces: [[0, 1, 2]] };
   expect(entry(triangle, [0.2, 0.2, 0], [0, 0, -1], true)).toBe(0);
   expect(entry(triangle, [0.6, 0.6, 0], [0, 0, -1], true)).toBeNull();
+});
+
+// A road to the right, as the language has it: its points are turned round, so that what is free is on the right.
+const road: StaticMesh = { name: "road", corners: [[6, 1], [4, 0], [0, 0]], facets: [[0, 1], [1, 2]], thin: false };
+
+test("a chain is one line, with a band on the side that is not free", () => {
+  expect(chainLines(road)).toEqual([[6, 1, 0, 4, 0, 0, 0, 0, 0]]);
+  expect(chainLines({ ...road, facets: [[1, 2], [0, 1]] })).toHaveLength(2);
+  const band = bandOf(road, 0.5);
+  expect(band).toHaveLength(36);
+  // Below the level part, and at a right angle behind the slope.
+  for (let corner = 6; corner < 12; ++corner) expect(band[3 * corner + 1]).toBeLessThanOrEqual(0);
+  expect(Math.min(...band.filter((_, k) => k >= 18 && k % 3 === 1))).toBeCloseTo(-0.5, 6);
+  const [x, y] = [band[6]! - band[3]!, band[7]! - band[4]!];
+  expect(Math.hypot(x, y)).toBeCloseTo(0.5, 6);
+  expect(2 * x + y).toBeCloseTo(0, 6);
+  expect(y).toBeLessThan(0);
+});
+
+test("a mesh is drawn as its triangles", () => {
+  const mesh: StaticMesh = { name: "hill", corners: [[0, 0, 0], [1, 0, 0], [1, 1, 2], [0, 1, 0]], facets: [[0, 1, 2], [0, 2, 3]], thin: false };
+  expect([...trianglesOf(mesh)]).toEqual([0, 0, 0, 1, 0, 0, 1, 1, 2, 0, 0, 0, 1, 1, 2, 0, 1, 0]);
 });

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include <continuo/language/check/declarations/files.hpp>
 #include <continuo/language/check/declarations/folder_file.hpp>
+#include <continuo/shapes/wavefront.hpp>
 
 namespace continuo::model::detail {
 
@@ -35,6 +37,36 @@ std::optional<Table> points_in_folder(const std::string& name, Span span, Table:
   // Its place only: the message quotes what stands there.
   report.fail("E272", span, "this file is not a table", fmt::format("{} is not as it has to be", read.status().place),
               "`continuo check`, where the file is, says more");
+  return std::nullopt;
+}
+
+bool is_confined(const Report& report) {
+  return report.files() == FileReach::model_folder;
+}
+
+/// The content of a file; E270 where there is none, or none that may be read.
+std::optional<std::string> text_of(const std::string& name, Span span, Report& report) {
+  if (is_confined(report)) {
+    Result<std::string> text = read_from_folder(folder_of(report), name);
+    if (text) return *std::move(text);
+    report.fail("E270", span, "this file is not read", text.status().message,
+                "files are found relative to the model's folder, and not outside of it");
+    return std::nullopt;
+  }
+  const std::string file = file_of(name, span, report);
+  if (file.empty()) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  return std::string{std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::optional<NamedColumn> column_in(std::string_view text, const std::string& name, Span span,
+                                     const std::string& column, Report& report) {
+  Result<NamedColumn> read = parse_column(text, name, column);
+  if (read) return *std::move(read);
+  report.fail(
+      "E272", span, "this file is not a table",
+      is_confined(report) ? fmt::format("it has no column of numbers named `{}`", column) : describe(read.status()),
+      fmt::format("a column named `{}` is read, or the only one", column));
   return std::nullopt;
 }
 
@@ -68,25 +100,34 @@ std::optional<Table> points_of(const std::string& file, Span span, Table::Betwee
 }
 
 std::optional<NamedColumn> column_of(const std::string& name, Span span, const std::string& column, Report& report) {
-  const bool is_confined = report.files() == FileReach::model_folder;
-  Result<std::string> text =
-      is_confined ? read_from_folder(folder_of(report), name) : Result<std::string>(std::string());
-  if (!is_confined) {
-    const std::string file = file_of(name, span, report);
-    if (file.empty()) return std::nullopt;
-    std::ifstream stream(file, std::ios::binary);
-    text = std::string{std::istreambuf_iterator<char>(stream), {}};
-  }
-  if (!text) {
-    report.fail("E270", span, "this file is not read", text.status().message,
-                "files are found relative to the model's folder, and not outside of it");
+  const auto text = text_of(name, span, report);
+  return text ? column_in(*text, name, span, column, report) : std::nullopt;
+}
+
+std::optional<std::array<NamedColumn, 2>> points_of_chain(const std::string& name, Span span, Report& report) {
+  const auto text = text_of(name, span, report);
+  if (!text) return std::nullopt;
+  if (parse_column(*text, name, {})) {  // only where there is one column it needs no name
+    report.fail("E272", span, "this file is no table of points", "it has one column",
+                "its first line names the columns `x` and `y`");
     return std::nullopt;
   }
-  Result<NamedColumn> read = parse_column(*text, name, column);
+  auto x = column_in(*text, name, span, "x", report);
+  if (!x) return std::nullopt;
+  auto y = column_in(*text, name, span, "y", report);
+  if (!y) return std::nullopt;
+  return std::array{*std::move(x), *std::move(y)};
+}
+
+std::optional<TriangleMesh<double>> triangles_of(const std::string& name, Span span, Report& report) {
+  const auto text = text_of(name, span, report);
+  if (!text) return std::nullopt;
+  Result<TriangleMesh<double>> read = parse_wavefront(*text, name);
   if (read) return *std::move(read);
-  report.fail("E272", span, "this file is not a table",
-              is_confined ? fmt::format("it has no column of numbers named `{}`", column) : describe(read.status()),
-              fmt::format("a column named `{}` is read, or the only one", column));
+  report.fail(
+      "E273", span, "this file is not a mesh",
+      is_confined(report) ? fmt::format("{} is not as it has to be", read.status().place) : describe(read.status()),
+      "a Wavefront OBJ file has lines `v 0 0 1` and `f 1 2 3`");
   return std::nullopt;
 }
 

@@ -1,11 +1,13 @@
 // continuo/language/check/declarations/files.hpp
-// Files that a model names: tables, and inputs over time.
+// Files that a model names: tables, inputs over time, meshes and chains.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <continuo/language/check/names/report.hpp>
+#include <continuo/shapes/mesh_shape.hpp>
 #include <continuo/symbolic/graph/column.hpp>
 #include <continuo/symbolic/graph/table.hpp>
 
@@ -21,5 +23,10 @@ namespace continuo::model::detail {
 /// The samples in the column of this name; E270 and E272 as above.
 [[nodiscard]] std::optional<NamedColumn> column_of(const std::string& name, Span span, const std::string& column,
                                                    Report& report);
+/// The columns `x` and `y` of a table, equally long; E270 and E272 as above.
+[[nodiscard]] std::optional<std::array<NamedColumn, 2>> points_of_chain(const std::string& name, Span span,
+                                                                        Report& report);
+/// The triangles of a Wavefront OBJ file; E270 as above, E273 where it is none.
+[[nodiscard]] std::optional<TriangleMesh<double>> triangles_of(const std::string& name, Span span, Report& report);
 
 }  // namespace continuo::model::detail

@@ -61,75 +61,6 @@ NodePoint Bodies::velocity_of(const ast::WorldAttributes& attributes, Scope& sco
   return {zero, zero, zero};
 }
 
-/// In space an angle is three numbers, the axis about which it is turned, and by how much as its length; or one number
-/// about `axis`.
-NodePoint Bodies::rotation_vector(const ast::WorldAttributes& attributes, Scope& scope) {
-  Graph& g = graph_;
-  const Measured pure = Measured::known(Unit());
-  const ast::Expression *angle = attribute(attributes, "angle"), *axis = attribute(attributes, "axis");
-  if (!axis) return numbers_.in_space(*angle, scope, pure, "an angle");
-  const NodePoint about = numbers_.point(*axis, scope, Measured::unknown(), "an axis");
-  const NodeId by = numbers_.number(*angle, scope, pure, "an angle about an axis", Sort::any);
-  if (!about[0].valid() || !by.valid()) return {};
-  const NodeId length = g.apply(Op::hypotenuse, g.apply(Op::hypotenuse, about[0], about[1]), about[2]);
-  numbers_.expect(length, Sort::positive, axis->span, "the length of an axis");
-  const NodeId part = g.divide(by, length);
-  return {g.multiply(about[0], part), g.multiply(about[1], part), g.multiply(about[2], part)};
-}
-
-Bodies::Turn Bodies::turn_of(const ast::WorldAttributes& attributes, Scope& scope) {
-  Graph& g = graph_;
-  const NodeId zero = g.constant(0);
-  Turn turn{.orientation = {zero}, .spin = {zero, zero, zero}};
-  const bool plane = text_.dimension == 2;
-  if (!plane) turn.orientation = {g.constant(1), zero, zero, zero};
-  const Measured pure = Measured::known(Unit());
-  const Measured rate = expressions_.workspace.time.per_time(work_.length.is_known() ? pure : Measured::unknown());
-  const ast::Expression *angle = attribute(attributes, "angle"), *spin = attribute(attributes, "spin"),
-                        *axis = attribute(attributes, "axis");
-  if (spin && plane) turn.spin[0] = numbers_.in_plane(*spin, scope, rate, "a spin");
-  if (spin && !plane) turn.spin = numbers_.in_space(*spin, scope, rate, "a spin");
-  if (axis && (plane || !angle))
-    report_.fail("E225", axis->span,
-                 plane ? "all bodies of the plane turn about one axis" : "by how much is it turned?", {},
-                 plane ? "leave `axis` out" : "add angle 30 [deg]");
-  if (angle && plane) turn.orientation[0] = numbers_.in_plane(*angle, scope, pure, "an angle");
-  if (!angle || plane) return turn;
-  const NodePoint about = rotation_vector(attributes, scope);
-  if (!about[0].valid()) return turn;
-  const NodeId whole = g.apply(Op::hypotenuse, g.apply(Op::hypotenuse, about[0], about[1]), about[2]);
-  const NodeId half = g.multiply(whole, g.constant(0.5));
-  // sin(a/2)/a times the three numbers, which are all 0 where a is.
-  const NodeId least = g.constant(std::numeric_limits<double>::min());
-  const NodeId part = g.divide(g.apply(Op::sine, half), g.apply(Op::maximum, whole, least));
-  turn.orientation[0] = g.apply(Op::cosine, half);
-  for (std::size_t k = 0; k < 3; ++k) turn.orientation[k + 1] = g.multiply(about[k], part);
-  return turn;
-}
-
-/// A point of a body that stands so, from the origin of its shape. In space p + 2 q x (q x p + w p) for the quaternion
-/// (w, q).
-NodePoint Bodies::turned(const std::array<double, 3>& point, const Turn& turn) const {
-  Graph& g = graph_;
-  const NodePoint p{g.constant(point[0]), g.constant(point[1]), g.constant(point[2])};
-  if (text_.dimension == 2) {
-    const NodeId c = g.apply(Op::cosine, turn.orientation[0]), s = g.apply(Op::sine, turn.orientation[0]);
-    return {g.subtract(g.multiply(c, p[0]), g.multiply(s, p[1])), g.add(g.multiply(s, p[0]), g.multiply(c, p[1])), {}};
-  }
-  const NodePoint q{turn.orientation[1], turn.orientation[2], turn.orientation[3]};
-  const auto cross = [&](const NodePoint& a, const NodePoint& b) {
-    NodePoint made;
-    for (std::size_t k = 0; k < 3; ++k)
-      made[k] = g.subtract(g.multiply(a[(k + 1) % 3], b[(k + 2) % 3]), g.multiply(a[(k + 2) % 3], b[(k + 1) % 3]));
-    return made;
-  };
-  NodePoint inner = cross(q, p);
-  for (std::size_t k = 0; k < 3; ++k) inner[k] = g.add(inner[k], g.multiply(turn.orientation[0], p[k]));
-  NodePoint made = cross(q, inner);
-  for (std::size_t k = 0; k < 3; ++k) made[k] = g.add(p[k], g.multiply(g.constant(2), made[k]));
-  return made;
-}
-
 void Bodies::set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn) {
   std::size_t state = expressions_.workspace.declared.bases[text_.bodies[body].base].first;
   for (std::size_t axis = 0; axis < text_.axes(); ++axis) {
@@ -166,10 +97,12 @@ void Bodies::make_body(const BodyText& body) {
   } else if (shape.shape.kind != ShapeDescription::Kind::hull && shape.shape.kind != ShapeDescription::Kind::compound) {
     report_.fail("E225", body.span, fmt::format("where is `{}`?", body.name), {}, "add at (0, 0)");
   }
-  const Turn turn = turn_of(attributes, scope);
+  const Turn turn = turns_.turn_of(attributes, scope);
   if (shape.centre != std::array<double, 3>{} &&
       turn.orientation[0].valid()) {  // the corners of a hull, and parts, are where `at` is the origin
-    const NodePoint centre = turned(shape.centre, turn);
+    const auto& [x, y, z] = shape.centre;
+    const NodePoint centre =
+        turned(graph_, {graph_.constant(x), graph_.constant(y), graph_.constant(z)}, turn.orientation, text_.dimension);
     for (std::size_t axis = 0; axis < text_.axes() && position[axis].valid() && centre[axis].valid(); ++axis)
       position[axis] = graph_.add(position[axis], centre[axis]);
   }
@@ -189,7 +122,7 @@ void Bodies::make_pattern(const PatternText& pattern) {
     body = shared;
   }
   const NodePoint velocity = velocity_of(attributes, scope);
-  const Turn turn = turn_of(attributes, scope);
+  const Turn turn = turns_.turn_of(attributes, scope);
   if (pattern.text->pattern == ast::Pattern::random) return place_random(pattern, velocity, turn);
   if (!attribute(attributes, "from")) {
     report_.fail("E225", pattern.text->name.span, "where does the pattern begin?", {},

@@ -8,6 +8,7 @@
 
 #include <continuo/language/check/expressions/expressions.hpp>
 #include <continuo/language/check/world/body_shapes.hpp>
+#include <continuo/language/check/world/turns.hpp>
 #include <continuo/language/check/world/world_numbers.hpp>
 
 namespace continuo::model::detail {
@@ -23,17 +24,12 @@ class Bodies {
         work_(work),
         states_(states),
         numbers_(expressions, work),
-        shapes_(expressions, work) {}
+        shapes_(expressions, work),
+        turns_(expressions, work) {}
 
   void make();
 
  private:
-  /// How a body stands and turns at the start: an angle and one spin in the plane, in space a quaternion and three.
-  struct Turn {
-    std::array<NodeId, 4> orientation;
-    NodePoint spin;
-  };
-
   void make_body(const BodyText& body);
   void make_pattern(const PatternText& pattern);
   void find_parts();  // compounds.cpp
@@ -47,9 +43,6 @@ class Bodies {
                                                Scope& scope);
   [[nodiscard]] std::uint32_t group_of(const ast::WorldAttributes& attributes);
   [[nodiscard]] NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
-  [[nodiscard]] Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
-  [[nodiscard]] NodePoint rotation_vector(const ast::WorldAttributes& attributes, Scope& scope);
-  [[nodiscard]] NodePoint turned(const std::array<double, 3>& point, const Turn& turn) const;
   void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn);
   void place_grid(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
   void place_random(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
@@ -63,6 +56,7 @@ class Bodies {
   std::vector<State>& states_;
   WorldNumbers numbers_;
   BodyShapes shapes_;
+  Turns turns_;
   std::map<std::size_t, std::vector<const Placed<ast::WorldItem>*>> parts_;  // of bodies that are compounds
 };
 

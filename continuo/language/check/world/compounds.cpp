@@ -76,7 +76,7 @@ std::optional<PartDescription> Bodies::part_of(const ast::WorldAttributes& attri
       part.position[axis] = *value;
     }
   }
-  const Turn turn = turn_of(attributes, scope);
+  const Turn turn = turns_.turn_of(attributes, scope);
   for (std::size_t k = 0; k < (text_.dimension == 2 ? 1U : 4U); ++k) {
     const auto value = turn.orientation[k].valid() ? graph_.value(turn.orientation[k]) : std::nullopt;
     if (!value) return std::nullopt;

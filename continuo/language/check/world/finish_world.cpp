@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/check/world/finish_world.hpp>
+#include <continuo/language/check/world/start_meshes.hpp>
 #include <continuo/language/check/world/start_shapes.hpp>
 #include <continuo/language/world_methods.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
@@ -130,6 +131,7 @@ void look_at_start(const Model& model, const WorldDescription& made, Report& rep
   const Places places(model, made, variables);
   look_at_bodies(made, places, report);
   look_at_walls(model, made, places, variables, report);
+  look_at_meshes(model, made, places, variables, report);
 }
 
 /// E264: what the exact motion refuses where the model names it.

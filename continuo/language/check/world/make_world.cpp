@@ -7,6 +7,7 @@
 #include <continuo/language/check/world/body_names.hpp>
 #include <continuo/language/check/world/joints.hpp>
 #include <continuo/language/check/world/make_world.hpp>
+#include <continuo/language/check/world/meshes.hpp>
 #include <continuo/language/check/world/springs.hpp>
 #include <continuo/language/check/world/walls.hpp>
 #include <continuo/language/check/world/world_settings.hpp>
@@ -15,9 +16,10 @@ namespace continuo::model::detail {
 
 namespace {
 
-/// Walls, springs, fixed bodies and joints: what is named after the bodies are there.
+/// Walls, meshes, springs, fixed bodies and joints: what is named after the bodies are there.
 void make_items(Expressions& expressions, WorldAtWork& work, const std::vector<State>& states) {
   Walls walls(expressions, work);
+  Meshes meshes(expressions, work);
   Springs springs(expressions, work, states);
   for (const auto& item : expressions.workspace.declared.world.items) {
     Scope scope = item.scope;
@@ -26,6 +28,8 @@ void make_items(Expressions& expressions, WorldAtWork& work, const std::vector<S
           using T = std::decay_t<decltype(node)>;
           if constexpr (std::is_same_v<T, ast::WorldWall> || std::is_same_v<T, ast::WorldContainer>) {
             walls.add(node, scope, item.span);
+          } else if constexpr (std::is_same_v<T, ast::WorldMesh>) {
+            meshes.add(node, scope, item.span);
           } else if constexpr (std::is_same_v<T, ast::WorldSpring> || std::is_same_v<T, ast::WorldSprings>) {
             springs.add(node, scope, item.span);
           } else if constexpr (std::is_same_v<T, ast::WorldFix>) {

@@ -61,7 +61,7 @@ std::optional<Queries::ThingPairs> Queries::pairs_of(const ast::Call& node, std:
   const ast::Expression& asking = node.arguments[0];
   const auto from = things(asking, scope);
   if (!from) return std::nullopt;
-  if (from->front().is_wall()) {
+  if (from->front().is_wall() || from->front().is_mesh()) {
     report_.fail("E225", asking.span, "a body or a point stands first", "this is a wall");
     return std::nullopt;
   }
@@ -74,7 +74,9 @@ std::optional<Queries::ThingPairs> Queries::pairs_of(const ast::Call& node, std:
   if (node.arguments.size() == first) {
     for (std::size_t i = 0; i < text_.bodies.size(); ++i) to.push_back(thing_of(i));
     for (std::size_t w = 0; w < work_.made.walls.size(); ++w) to.push_back({.wall = w});
+    for (std::size_t m = 0; m < work_.made.meshes.size(); ++m) to.push_back({.mesh = m});
   }
+  if (node.callee.text == "ray" && !replace_by_facets(to, span)) return std::nullopt;
   for (const std::vector<Thing>* things : {&*from, &std::as_const(to)})
     if (!are_balls(*things, node.callee.text, span)) return std::nullopt;
   ThingPairs pairs;
@@ -91,15 +93,44 @@ std::optional<Queries::ThingPairs> Queries::pairs_of(const ast::Call& node, std:
   return std::nullopt;
 }
 
+/// A ray meets the facets of meshes; E225 where these are too many to be written out.
+bool Queries::replace_by_facets(std::vector<Thing>& things, Span span) const {
+  constexpr std::size_t most = 10'000;
+  std::vector<Thing> replaced;
+  for (const Thing& thing : things) {
+    if (!thing.is_mesh()) {
+      replaced.push_back(thing);
+      continue;
+    }
+    const MeshDescription& mesh = work_.made.meshes[thing.mesh];
+    if (std::max({mesh.points.size(), mesh.corners.size(), mesh.triangles.size()}) > most) {
+      report_.fail("E225", span, fmt::format("a ray looks at {} facets of a mesh at most", most),
+                   fmt::format("`{}` has more", mesh.name),
+                   "name what it looks at, as in ray(car, (1, 0), 5, wall), or a coarser mesh");
+      return false;
+    }
+    const std::vector<Thing> facets = lines_.facets_of(thing.mesh);
+    if (facets.empty()) return false;  // its file could not be read, which is said
+    replaced.insert(replaced.end(), facets.begin(), facets.end());
+  }
+  things = std::move(replaced);
+  return true;
+}
+
 /// E225 where a surface is meant that has no formula here.
 bool Queries::are_balls(const std::vector<Thing>& things, std::string_view query, Span span) const {
+  const bool is_ray = query == "ray";
   const auto other = std::ranges::find_if(things, [&](const Thing& thing) {
+    if (thing.is_mesh()) return !is_ray;
     return thing.body != no_body && work_.made.bodies[thing.body].shape.kind != ShapeDescription::Kind::ball;
   });
   if (other == things.end()) return true;
-  report_.fail("E225", span, fmt::format("`{}` knows balls, walls and points", query),
-               fmt::format("`{}` is none of these", work_.made.bodies[other->body].name),
-               "name the balls that are meant, or a point of the body");
+  const std::string& name =
+      other->is_mesh() ? work_.made.meshes[other->mesh].name : work_.made.bodies[other->body].name;
+  report_.fail("E225", span, fmt::format("`{}` knows balls, walls{} and points", query, is_ray ? ", meshes" : ""),
+               fmt::format("`{}` is none of these", name),
+               other->is_mesh() ? "name the balls and walls that are meant, or cast a ray"
+                                : "name the balls that are meant, or a point of the body");
   return false;
 }
 
@@ -129,11 +160,14 @@ std::optional<std::vector<Thing>> Queries::things_named(const ast::Name& name, S
     if (!symbol || symbol->kind != Symbol::Kind::body) {
       for (std::size_t w = 0; w < work_.made.walls.size(); ++w)
         if (work_.made.walls[w].name == name.text) found.push_back({.wall = w});
+      for (std::size_t m = 0; m < work_.made.meshes.size(); ++m)
+        if (work_.made.meshes[m].name == name.text) found.push_back({.mesh = m});
     }
   }
   if (!found.empty()) return found;
   std::vector<std::string> walls;
   for (const WallDescription& wall : work_.made.walls) walls.push_back(wall.name);
+  for (const MeshDescription& mesh : work_.made.meshes) walls.push_back(mesh.name);
   const std::string near = is_word && !expressions_.workspace.declared.symbols.find({name.text}, Scope::no_mode)
                                ? did_you_mean(name.text, walls)
                                : std::string();

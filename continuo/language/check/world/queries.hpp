@@ -36,6 +36,7 @@ class Queries {
 
   [[nodiscard]] std::optional<ThingPairs> pairs_of(const ast::Call& node, std::size_t first, Span span,
                                                    Scope& scope) const;
+  [[nodiscard]] bool replace_by_facets(std::vector<Thing>& things, Span span) const;
   [[nodiscard]] bool are_balls(const std::vector<Thing>& things, std::string_view query, Span span) const;
   [[nodiscard]] std::optional<std::vector<Thing>> things(const ast::Expression& text, Scope& scope) const;
   [[nodiscard]] std::optional<std::vector<Thing>> things_named(const ast::Name& name, Scope& scope) const;

@@ -1,18 +1,23 @@
 // continuo/language/check/world/sight_lines.hpp
-// Gaps between bodies, walls and points, and ways along a ray, as nodes.
+// Gaps between bodies, walls and points, and ways along a ray, also to facets of meshes, as nodes.
 #pragma once
+#include <array>
 #include <cstddef>
+#include <vector>
 
 #include <continuo/language/world.hpp>
 #include <continuo/symbolic/graph/expression.hpp>
 
 namespace continuo::model::detail {
 
-/// What a query asks about: a body, a wall, or a point.
+/// What a query asks about: a body, a wall, a facet of a mesh, or a point.
 struct Thing {
-  std::size_t body = no_body, wall = no_body;  // wall: by its number
-  NodePoint point{};                           // of a body its centre
+  std::size_t body = no_body, wall = no_body, mesh = no_body;  // wall and mesh: by their numbers
+  NodePoint point{};                                           // of a body its centre
+  std::array<NodePoint, 3>
+      facet{};  // of a mesh the corners of a triangle, or of a segment, whose third is of no meaning
   [[nodiscard]] bool is_wall() const { return wall != no_body; }
+  [[nodiscard]] bool is_mesh() const { return mesh != no_body; }
 };
 
 class SightLines {
@@ -26,6 +31,8 @@ class SightLines {
   [[nodiscard]] NodeId way_to(const Thing& thing, const NodePoint& from, const NodePoint& direction,
                               NodeId reach) const;
   [[nodiscard]] NodeId length_of(const NodePoint& v) const;
+  /// The facets of a mesh, as it stands.
+  [[nodiscard]] std::vector<Thing> facets_of(std::size_t mesh) const;
 
  private:
   [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(dimension_); }
@@ -33,6 +40,9 @@ class SightLines {
                                    NodeId reach) const;
   [[nodiscard]] NodeId way_to_wall(const WallDescription& wall, const NodePoint& from, const NodePoint& direction,
                                    NodeId reach) const;
+  [[nodiscard]] NodeId way_to_facet(const Thing& facet, const NodePoint& from, const NodePoint& direction,
+                                    NodeId reach) const;
+  [[nodiscard]] NodeId determinant(const NodePoint& u, const NodePoint& v, const NodePoint& w) const;
   [[nodiscard]] NodeId inner_product(const NodePoint& v, const NodePoint& w) const;
   [[nodiscard]] NodePoint from_to(const NodePoint& from, const NodePoint& to) const;
 

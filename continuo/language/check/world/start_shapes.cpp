@@ -129,6 +129,20 @@ double StartShapes::depth(std::size_t i, std::size_t j) const {
       cores_);
 }
 
+template <int Dim>
+double StartShapes::depth_in_facet(std::size_t i, const std::array<V<Dim>, Dim>& corners) const {
+  PlacedCore<Dim> facet;
+  facet.core.corners.assign(corners.begin(), corners.end());
+  for (std::uint8_t k = 0; Dim == 3 && k < corners.size(); ++k)
+    facet.core.edges.push_back({.from = k, .to = static_cast<std::uint8_t>((k + 1) % corners.size())});
+  double deepest = 0;
+  for (const PlacedCore<Dim>& part : std::get<std::vector<PlacedCores<Dim>>>(cores_)[i])
+    deepest = std::max(deepest, depth_of(part, facet));
+  return deepest;
+}
+template double StartShapes::depth_in_facet<2>(std::size_t, const std::array<V<2>, 2>&) const;
+template double StartShapes::depth_in_facet<3>(std::size_t, const std::array<V<3>, 3>&) const;
+
 double StartShapes::depth_in_wall(std::size_t i, const std::array<double, 3>& normal, double offset,
                                   bool is_thin) const {
   double above = -offset;

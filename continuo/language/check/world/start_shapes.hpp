@@ -33,6 +33,10 @@ class StartShapes {
   [[nodiscard]] double depth_in_wall(std::size_t i, const std::array<double, 3>& normal, double offset,
                                      bool is_thin) const;
 
+  /// How deep a body is within a segment or a triangle; 0 or below where they are apart or touch.
+  template <int Dim>
+  [[nodiscard]] double depth_in_facet(std::size_t i, const std::array<Vector<double, Dim>, Dim>& corners) const;
+
   std::vector<std::array<double, 3>> centre;
   std::vector<double> radius;  // as in BodyDescription
 

@@ -144,8 +144,9 @@ void WorldSettings::settle_mode() {
   if (named && !made.mode.fast) return;
   const ast::Expression* integrator = named ? attribute(named->attributes, "integrator") : nullptr;
   if (integrator && made.mode.integrator != "semi_implicit_euler")
-    report_.fail("E264", integrator->span, fmt::format("`{}` moves balls without joints", made.mode.integrator),
-                 "other bodies, and joints, are moved by semi_implicit_euler", "leave `integrator` out");
+    report_.fail("E264", integrator->span,
+                 fmt::format("`{}` moves balls without joints and meshes", made.mode.integrator),
+                 "other bodies, joints and meshes are moved by semi_implicit_euler", "leave `integrator` out");
   made.mode.fast = true;
 }
 
