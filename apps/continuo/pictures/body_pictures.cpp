@@ -93,6 +93,16 @@ void BodyPictures::take(const live::Bodies& bodies, PictureFrame& frame) {
   }
 }
 
+/// Ground belongs into the picture whole, unless bodies would be too small in it.
+void BodyPictures::take_meshes(PictureFrame& frame) const {
+  constexpr double most = 30;  // times as wide as without
+  PictureFrame wider = frame;
+  for (const worlds::StaticMeshShape& mesh : meshes_)
+    for (const Point& corner : mesh.corners) wider.take(flat(corner), 0);
+  const auto size = [](const PictureFrame& of) { return std::max(of.right - of.left, of.high - of.low); };
+  if (size(wider) <= most * size(frame)) frame = wider;
+}
+
 /// The frame, cut by the wall: what lies behind.
 std::vector<Flat> BodyPictures::wall_in_plane(const worlds::WallShape& wall, const PictureFrame& frame) const {
   const std::array<Flat, 4> corners = {Flat{frame.left, frame.low}, Flat{frame.right, frame.low},

@@ -18,6 +18,8 @@ class BodyPictures {
 
   /// So that they are within the frame wherever they go.
   void take(const live::Bodies& bodies, PictureFrame& frame);
+  /// Behind all that `take` has seen.
+  void take_meshes(PictureFrame& frame) const;
   /// In the background, what does not move.
   void draw_walls(const PictureFrame& frame, PictureParts& parts) const;
   void draw_meshes(const PictureFrame& frame, PictureParts& parts) const;

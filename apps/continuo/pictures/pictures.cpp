@@ -52,6 +52,7 @@ class ScenePictures {
     if (session.world()) {
       bodies_.emplace(*session.world());
       for (const auto& slice : slices) bodies_->take(*slice->bodies, frame);
+      bodies_->take_meshes(frame);
     }
     if (!frame.empty()) frame_ = with_margin(frame);
   }

@@ -3,7 +3,7 @@ import * as three from "three";
 import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Bodies, StaticMesh } from "../protocol";
 import { spring, springPoints, type Point } from "./curves";
-import { gridStep, include, type Bounds } from "./fit";
+import { emptyBounds, gridStep, include, isEmpty, union, type Bounds } from "./fit";
 import { bandOf, chainLines, surfaceOf } from "./ground";
 import { JointMarks } from "./joints";
 import { Polyline } from "./polyline";
@@ -52,6 +52,7 @@ export class BodiesView {
   readonly joints: JointMarks;
   private readonly solids: Solids;
   private orientations: Float32Array | null = null;
+  private readonly ofMeshes: Bounds = emptyBounds();
   private readonly lines: Polyline[] = [];
   private readonly springs: ShownSpring[];
   private readonly surfaces: { geometry: three.BufferGeometry; material: three.Material }[] = [];
@@ -123,8 +124,9 @@ export class BodiesView {
     shown.coil.set(coilPoints, coilPoints.length / 3);
   }
 
-  /** Containers belong into the picture whole. */
-  includeContainers(bounds: Bounds): void {
+  /** Containers, meshes and chains belong into the picture whole. */
+  includeSurroundings(bounds: Bounds): void {
+    if (!isEmpty(this.ofMeshes)) union(bounds, this.ofMeshes);
     const box = boxOfWalls(this.bodies.walls, this.bodies.dimension);
     for (const { lower, upper } of box ? [box, ...this.bodies.containers] : this.bodies.containers) {
       include(bounds, lower[0]!, lower[1]!, lower[2] ?? 0);
@@ -216,6 +218,7 @@ export class BodiesView {
 
   /** A chain is a line, with a band behind it where only one side is free; a mesh has faces. */
   private ground(mesh: StaticMesh, color: string, flat: boolean): void {
+    for (const [x, y, z] of mesh.corners) include(this.ofMeshes, x!, y!, z ?? 0);
     if (!flat) {
       const surface = surfaceOf(mesh, color);
       this.surfaces.push(...surface.parts);

@@ -166,7 +166,7 @@ export class SceneView {
       this.bodies = this.showBodies(this.bodies, model.bodies, frame.positions, frame.orientations, false);
       if (frame.ghostPositions) this.ghostBodies = this.showBodies(this.ghostBodies, model.bodies, frame.ghostPositions, frame.ghostOrientations, true);
       union(bounds, boundsOfBodies(frame.positions, model.bodies.dimension, radiusOf(model.bodies)));
-      this.bodies.includeContainers(bounds);
+      this.bodies.includeSurroundings(bounds);
     }
     if (frame.ghostScene) union(bounds, boundsOfItems(model.drawing, frame.ghostScene, this.stage.isFlat ? 1 : 2));
     this.interest.see(bounds);
