@@ -4,7 +4,7 @@ import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Bodies, StaticMesh } from "../protocol";
 import { spring, springPoints, type Point } from "./curves";
 import { emptyBounds, gridStep, include, isEmpty, union, type Bounds } from "./fit";
-import { bandOf, chainLines, surfaceOf } from "./ground";
+import { bandOf, bandWidth, chainLines, surfaceOf } from "./ground";
 import { JointMarks } from "./joints";
 import { Polyline } from "./polyline";
 import { Solids } from "./solids";
@@ -227,7 +227,7 @@ export class BodiesView {
     }
     for (const points of chainLines(mesh)) this.add(points, color, flat);
     if (mesh.thin) return;
-    const geometry = new three.BufferGeometry().setAttribute("position", new three.Float32BufferAttribute(bandOf(mesh, this.size / 25), 3));
+    const geometry = new three.BufferGeometry().setAttribute("position", new three.Float32BufferAttribute(bandOf(mesh, bandWidth(mesh)), 3));
     const band = new three.Mesh(geometry, new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.16, depthTest: false, depthWrite: false, side: three.DoubleSide }));
     band.renderOrder = -9;
     this.surfaces.push(band);

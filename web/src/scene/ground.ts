@@ -34,6 +34,16 @@ export function bandOf({ corners, facets }: StaticMesh, width: number): Float32A
   return points;
 }
 
+/** As wide as looks well beside so long a chain. */
+export function bandWidth({ corners }: StaticMesh): number {
+  const extent = (axis: number): number => {
+    const places = corners.map((corner) => corner[axis]!);
+    return places.reduce((most, place) => Math.max(most, place), -Infinity) - places.reduce((least, place) => Math.min(least, place), Infinity);
+  };
+  return Math.max(extent(0), extent(1)) / 50;
+}
+
+const faceColor = "#b4bec8";
 /** Of more triangles edges would hide the faces. */
 const fewTriangles = 5000;
 
@@ -41,7 +51,7 @@ const fewTriangles = 5000;
 export function surfaceOf(mesh: StaticMesh, color: string): three.Object3D & { parts: { geometry: three.BufferGeometry; material: three.Material }[] } {
   const geometry = new three.BufferGeometry().setAttribute("position", new three.Float32BufferAttribute(trianglesOf(mesh), 3));
   geometry.computeVertexNormals();
-  const faces = new three.Mesh(geometry, new three.MeshLambertMaterial({ color, side: three.DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+  const faces = new three.Mesh(geometry, new three.MeshLambertMaterial({ color: faceColor, side: three.DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
   const parts: { geometry: three.BufferGeometry; material: three.Material }[] = [faces];
   const group = new three.Group();
   group.add(faces);

@@ -141,3 +141,39 @@ test("a walker walks faster while its key is held, and a car is driven back by i
   await tab.keyboard.up("s");
   await picture(tab, "offroad");
 });
+
+test("ground of triangles and of segments is drawn, and belongs into the picture", async (t) => {
+  const folder = mkdtempSync(path.join(tmpdir(), "continuo-ground-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const rows = [0, 1, 2, 3, 4, 5, 6];
+  const height = (x, y) => 0.6 * Math.cos(x - 3) * Math.cos(y - 3);
+  const corners = rows.flatMap((y) => rows.map((x) => `v ${x - 3} ${y - 3} ${height(x, y)}`));
+  const faces = rows.slice(1).flatMap((y) => rows.slice(1).map((x) => `f ${7 * (y - 1) + x} ${7 * (y - 1) + x + 1} ${7 * y + x + 1} ${7 * y + x}`));
+  writeFileSync(path.join(folder, "hills.obj"), [...corners, ...faces, ""].join("\n"));
+  const file = path.join(folder, "hills.sim");
+  writeFileSync(file, `world {
+  dimension 3
+  gravity (0, 0, -9.81)
+  mode fast step 1/120
+  wall hills mesh "hills.obj"
+  bodies ball grid 3 x 3 x 1 from (-1.5, -1.5, 1.5) spacing (1.5, 1.5, 1) radius 0.25
+}
+run 0..60
+`);
+  const { url } = await serve(t, file);
+  const tab = await open(t, url);
+  await until(tab, ({ t: time }) => time > 0.4, "it plays");
+  const [hills] = await tab.evaluate(() => globalThis.continuo.session.model.bodies.meshes);
+  assert.deepEqual([hills.name, hills.corners.length, hills.facets.length, hills.thin], ["hills", 49, 72, false]);
+  await picture(tab, "hills");
+  const road = await open(t, (await serve(t, model("offroad"))).url);
+  await until(road, ({ t: time }) => time > 0.1, "the car stands on its road");
+  const at = await road.evaluate(() => {
+    const { session, app } = globalThis.continuo;
+    const [chain] = session.model.bodies.meshes;
+    return [chain.facets.length, ...[chain.corners[0], chain.corners.at(-1)].map((corner) => app.scene.onPage([...corner, 0]).x)];
+  });
+  assert.equal(at[0], 40);
+  assert.ok(at.slice(1).every((x) => x >= 0 && x <= 1280), `both ends of the road are in the picture: ${at}`);
+  await picture(road, "road");
+});

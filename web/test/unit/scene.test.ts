@@ -3,7 +3,7 @@ import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/c
 import { boundsOfItems, distanceFor, gridStep, heightFor, Interest, type Bounds } from "../../src/scene/fit";
 import { boxOfWalls } from "../../src/scene/bodies";
 import { endsOf, isBroken, linesOf } from "../../src/scene/joints";
-import { bandOf, chainLines, trianglesOf } from "../../src/scene/ground";
+import { bandOf, bandWidth, chainLines, trianglesOf } from "../../src/scene/ground";
 import { edgesOf, entry, normalOf, placed, rotationOf } from "../../src/scene/solids";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
@@ -176,6 +176,7 @@ const road: StaticMesh = { name: "road", corners: [[6, 1], [4, 0], [0, 0]], face
 test("a chain is one line, with a band on the side that is not free", () => {
   expect(chainLines(road)).toEqual([[6, 1, 0, 4, 0, 0, 0, 0, 0]]);
   expect(chainLines({ ...road, facets: [[1, 2], [0, 1]] })).toHaveLength(2);
+  expect(bandWidth(road)).toBeCloseTo(6 / 50, 12);
   const band = bandOf(road, 0.5);
   expect(band).toHaveLength(36);
   // Below the level part, and at a right angle behind the slope.
