@@ -106,7 +106,7 @@ TEST(Replay, GoesOnWithEquations) {
   shell.write("push.csv", "t,push\n0,1\n1.1,3\n2.3,0\n");
   const Result changed = shell.run("resume ball.run");
   EXPECT_EQ(changed.exit, 1);
-  EXPECT_THAT(changed.err, HasSubstr("a table that ball.sim reads has changed"));
+  EXPECT_THAT(changed.err, HasSubstr("a file that ball.sim reads has changed"));
 }
 
 TEST(Replay, GoesOnWithEquationsAfterCtrlC) {

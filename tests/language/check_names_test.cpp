@@ -138,5 +138,30 @@ TEST(CheckNames, BodiesThatBeginWithinEachOtherAreTold) {
   EXPECT_EQ(places("dimension 3; bodies g grid 3 x 3 x 3 from (0, 0, 0) spacing (1, 1, 1)"), "");
 }
 
+// Ground that is written from right to left is free below: what falls to its back first falls through it.
+TEST(CheckNames, BodiesThatBeginWithinOrBehindGroundAreTold) {
+  const std::string right = "mode fast step 1/60; gravity (0, -1); wall road chain (0, 0) (4, 0) (6, 1); ",
+                    wrong = "mode fast step 1/60; gravity (0, -1); wall road chain (6, 1) (4, 0) (0, 0)";
+  const std::string behind = "it begins behind it: what is free is on the left of the way from point to point";
+  EXPECT_EQ(places(right + "body a at (1, 0.5)"), "");
+  EXPECT_EQ(places(right + "body a at (1, 0.5) box (2, 1)"), "");
+  EXPECT_EQ(places(right + "body a at (1, 0.4)"), "E295 `a` begins within `road` by 0.1\n");
+  EXPECT_EQ(places(right + "body a at (1, 0.4) fixed"), "");
+  EXPECT_EQ(places(right + "body a at (1, -3)"), "");  // below, and falls on
+  EXPECT_EQ(places(right + "body a at (5, 0.8) box (1, 1)"),
+            "E295 `a` begins within `road` by 0.402\n");  // its corner (5.5, 0.3) is 0.45 below the slope, times cos
+  EXPECT_EQ(places(wrong + "; body a at (1, 3)"), "E295 `a` falls through `road` " + behind + "\n");
+  EXPECT_EQ(places(wrong + "; body a at (7, 3)"), "");  // beside it
+  EXPECT_EQ(places(wrong + " thin; body a at (1, 3)"), "");
+  // A room, above it a shelf that is passed from behind, and an obstacle.
+  EXPECT_EQ(
+      places(
+          "mode fast step 1/60; gravity (0, -1); wall room chain (0, 0) (4, 0) (4, 4) (0, 4) closed; body a at (2, 2)"),
+      "");
+  EXPECT_EQ(places("mode fast step 1/60; gravity (0, -1); wall block chain (0, 4) (4, 4) (4, 0) (0, 0) closed; body a "
+                   "at (2, 2)"),
+            "E295 `a` falls through `block` " + behind + "\n");
+}
+
 }  // namespace
 }  // namespace continuo::model

@@ -1,5 +1,6 @@
 // Files that a text from the network names: those of the model's folder are read, nothing else is, and nothing is
 // quoted.
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -40,9 +41,15 @@ class Confined : public ::testing::Test {
   void TearDown() override { fs::remove_all(root); }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(root / name) << text; }
-  Loaded loaded(const std::string& name, bool as_input = false) const {
-    const std::string text = as_input ? "input f = 0 from \"" + name + "\"\nx' = f\nx(0) = 0\n"
-                                      : "table f from \"" + name + "\"\nx' = interp(f, t)\nx(0) = 0\n";
+  enum class As { table, input, chain, mesh };
+  static constexpr std::array every_use{As::table, As::input, As::chain, As::mesh};
+  Loaded loaded(const std::string& name, As use = As::table) const {
+    const std::string file = "\"" + name + "\"\n", world = "world { mode fast step 1/60\n ";
+    const std::string text = use == As::table   ? "table f from " + file + "x' = interp(f, t)\nx(0) = 0\n"
+                             : use == As::input ? "input f = 0 from " + file + "x' = f\nx(0) = 0\n"
+                             : use == As::chain
+                                 ? world + "body b at (9, 9)\n wall w chain from " + file + "}\n"
+                                 : world + "dimension 3\n body b at (9, 9, 9)\n wall w mesh " + file + "}\n";
     return load_confined(Source((root / "model" / "m.sim").string(), text));
   }
 
@@ -52,8 +59,16 @@ class Confined : public ::testing::Test {
 TEST_F(Confined, ReadsWhatLiesInTheFolder) {
   for (const std::string name : {"good.csv", "data/deep.csv", "./good.csv", "data/./deep.csv", "data//deep.csv"}) {
     EXPECT_TRUE(loaded(name).model) << name << "\n" << loaded(name).text();
-    EXPECT_TRUE(loaded(name, true).model) << name;
+    EXPECT_TRUE(loaded(name, As::input).model) << name;
   }
+}
+
+TEST_F(Confined, ReadsGroundThatLiesInTheFolder) {
+  write("model/data/points.csv", "x,y\n0,0\n1,2\n");
+  write("model/hill.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::string name : {"data/points.csv", "./data//points.csv"})
+    EXPECT_TRUE(loaded(name, As::chain).model) << loaded(name, As::chain).text();
+  EXPECT_TRUE(loaded("hill.obj", As::mesh).model) << loaded("hill.obj", As::mesh).text();
 }
 
 TEST_F(Confined, ReadsNothingElse) {
@@ -75,8 +90,8 @@ TEST_F(Confined, ReadsNothingElse) {
                                           "absent.csv",
                                           "good.csv/x"};
   for (const std::string& name : names) {
-    for (const bool as_input : {false, true}) {
-      const Loaded result = loaded(name, as_input);
+    for (const As use : every_use) {
+      const Loaded result = loaded(name, use);
       EXPECT_FALSE(result.model) << name;
       const std::string text = result.text();
       EXPECT_EQ(text.find("root:x"), std::string::npos) << text;
@@ -90,6 +105,14 @@ TEST_F(Confined, QuotesNothing) {
   EXPECT_EQ(text.find("classified"), std::string::npos) << text;
   EXPECT_NE(text.find("words.csv:2"), std::string::npos) << text;
   EXPECT_NE(text.find("E272"), std::string::npos) << text;
+  write("model/words.obj", "v 0 0 0\nv 1 classified 0\n");
+  write("model/points.csv", "x,y,z\n0,0,1\n1,classified,2\n");
+  const std::string of_mesh = loaded("words.obj", As::mesh).text(), of_chain = loaded("points.csv", As::chain).text();
+  EXPECT_EQ(of_mesh.find("classified"), std::string::npos) << of_mesh;
+  EXPECT_NE(of_mesh.find("words.obj:2"), std::string::npos) << of_mesh;
+  EXPECT_NE(of_mesh.find("E273"), std::string::npos) << of_mesh;
+  EXPECT_EQ(of_chain.find("classified"), std::string::npos) << of_chain;
+  EXPECT_NE(of_chain.find("E272"), std::string::npos) << of_chain;
 }
 
 /// The author of a file on this computer may read it anywhere, and is told what stands there.

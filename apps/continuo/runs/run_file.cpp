@@ -87,7 +87,7 @@ bool has_changed(const model::RunHead& head, const model::ModelProgram& program,
     return true;
   }
   if (head.data != checksum_of_tables(program)) {
-    say(fmt::format("{}: a table that {} reads has changed since: run the model again", path, head.file));
+    say(fmt::format("{}: a file that {} reads has changed since: run the model again", path, head.file));
     return true;
   }
   return false;

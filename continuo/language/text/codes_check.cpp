@@ -216,8 +216,8 @@ ball (l*sin(theta), -l*cos(theta)) drag. A point that depends on no state cannot
 The first line may contain names. An input reads the column with its own name, or the second one.)"},
     Code{"E273", "a file is not a mesh",
          R"(A mesh of a world is read from a Wavefront OBJ file: lines `v x y z` are its corners, lines `f 1 2 3` its
-faces, by the numbers of their corners, which go counter-clockwise seen from the side that is free. Faces of more corners
-are cut into triangles. Each face has an area; other lines have no meaning here.)"},
+faces, by the numbers of their corners, which go counter-clockwise seen from the side that is free. Faces of more
+corners are cut into triangles. Each face has an area; other lines have no meaning here.)"},
     Code{"E280", "there is nothing to simulate",
          R"(The smallest model is an equation with its initial value: x' = -x and x(0) = 1.)"},
     Code{"E281", "a check cannot be made",
