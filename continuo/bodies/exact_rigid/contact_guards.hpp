@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 #include <continuo/bodies/exact_rigid/rigid_flight.hpp>
 #include <continuo/bodies/exact_rigid/separation.hpp>
 #include <continuo/numerics/root_bracketing.hpp>
@@ -22,6 +23,7 @@ template <class Real, int Dim>
 struct WatchedPair {
   ExactPart<Real, Dim> part_a{}, part_b{};
   std::uint32_t a = 0, b = 0;
+  Real overlap{};  // beyond what is in contact, that is the end of the flight, in units of the size
 };
 
 template <class Real, int Dim>
@@ -31,8 +33,8 @@ class ContactGuards {
   using X = std::vector<Real>;
   using System = RigidSystem<Real, Dim>;
 
-  /// Corners nearer to the face than `near` times the size of their body may stay there: the gap of what is in contact
-  /// stays within `drift` times the size.
+  /// Corners nearer to the face than `near` times the size of their body may stay there, where what is in contact holds
+  /// them. A contact has left its feature where the gap is more than `drift` times the size.
   ContactGuards(const Real& near, const Real& drift, const Real& force, const Real& speed)
       : near_(near), drift_(drift), force_(force), speed_(speed) {}
 
@@ -43,10 +45,12 @@ class ContactGuards {
     for (const auto& contact : system.contacts())
       for (const auto& pair : pairs_)
         if (pair.a == contact.a && pair.b == contact.b) find_corners(system, contact, pair);
+    for (auto& corner : corners_) corner.is_held = corner.is_held && depends(system, corner);
+    for (auto& pair : pairs_) pair.overlap = std::max(2 * small, Real(small - beyond_held(system, pair)));
     last_ = values(system, t, state);
     small_.assign(last_.size(), small);
     for (std::size_t k = 0; k < corners_.size(); ++k)
-      if (corners_[k].is_near) small_[first_corner_ + k] = drift_;
+      if (corners_[k].is_held) small_[first_corner_ + k] = drift_;
     armed_.resize(last_.size());
     for (std::size_t i = 0; i < last_.size(); ++i) armed_[i] = last_[i] > small_[i];
   }
@@ -85,7 +89,7 @@ class ContactGuards {
     V in_body{};
     bool of_b = false;
     Real rounding{}, size{};
-    bool is_near = false;  // at the beginning
+    bool is_held = false;  // on the face, by the contacts and joints
   };
 
   [[nodiscard]] Real root(RigidFlight<Real, Dim>& flight, std::size_t i, const Real& level, const Real& near,
@@ -114,15 +118,45 @@ class ContactGuards {
                (of_b ? other.feature.point_b : other.feature.point_a) == one.in_body;
       };
       if (std::ranges::any_of(system.contacts(), touches)) continue;
-      one.is_near = gap_of(system, one) <= near_;
+      one.is_held = gap_of(system, one) <= near_;
       corners_.push_back(one);
     }
   }
-  [[nodiscard]] Real gap_of(const System& system, const Corner& corner) const {
+  [[nodiscard]] ContactPlace<Real, Dim> place(const System& system, const Corner& corner) const {
     const auto& contact = system.contacts()[corner.contact];
     ContactFeature<Real, Dim> feature = contact.feature;
     (corner.of_b ? feature.point_b : feature.point_a) = corner.in_body;
-    return place_of(feature, system.bodies()[contact.a], system.bodies()[contact.b]).gap / corner.size;
+    return place_of(feature, system.bodies()[contact.a], system.bodies()[contact.b]);
+  }
+  [[nodiscard]] Real gap_of(const System& system, const Corner& corner) const {
+    return place(system, corner).gap / corner.size;
+  }
+  [[nodiscard]] static MotionRow<Real, Dim> row_of(const System& system, const ActingContact<Real, Dim>& contact,
+                                                   const ContactPlace<Real, Dim>& at) {
+    MotionRow<Real, Dim> row = normal_row(at, system.bodies()[contact.a], system.bodies()[contact.b]);
+    row.a = contact.a, row.b = contact.b;
+    return row;
+  }
+  /// Whether a corner cannot move against its face as long as joints and contacts hold, as the fourth corner of a box
+  /// on a floor: its row depends on theirs. Its gap has the errors within a step, which are no change of the contact.
+  [[nodiscard]] bool depends(const System& system, const Corner& corner) const {
+    std::vector<MotionRow<Real, Dim>> held = system.joint_rows();
+    for (const auto& contact : system.contacts())
+      held.push_back(
+          row_of(system, contact, place_of(contact.feature, system.bodies()[contact.a], system.bodies()[contact.b])));
+    const MotionRow<Real, Dim> row = row_of(system, system.contacts()[corner.contact], place(system, corner));
+    const std::vector<MotionRow<Real, Dim>> rows{row};
+    const Real free = ReducedContacts<Real, Dim>(system.bodies().data(), held, rows).matrix()[0];
+    return !(free > Real(1e-6) * response(row, row, system.bodies().data()));
+  }
+  /// The gap of a pair beyond that of its contacts that last, whose errors within a step are not its own.
+  [[nodiscard]] Real beyond_held(const System& system, const WatchedPair<Real, Dim>& pair) const {
+    const ExactBody<Real, Dim>&a = system.bodies()[pair.a], &b = system.bodies()[pair.b];
+    Real held = std::numeric_limits<Real>::infinity();
+    for (const auto& contact : system.contacts())
+      if (contact.a == pair.a && contact.b == pair.b) held = std::min(held, place_of(contact.feature, a, b).gap);
+    const Real gap = separation_of(pair.part_a, a, pair.part_b, b).gap;
+    return (gap - (held < std::numeric_limits<Real>::infinity() ? held : Real(0))) / pair.part_b.convex->reach;
   }
   [[nodiscard]] std::vector<Real> values(System& system, const Real& t, const X& state) {
     system.evaluate(t, state);
@@ -133,9 +167,8 @@ class ContactGuards {
     first_corner_ = all.size();
     for (const Corner& corner : corners_) all.push_back(gap_of(system, corner));
     for (const WatchedPair<Real, Dim>& pair : pairs_) {
-      const auto& part = pair.part_b;
-      const Real gap = separation_of(pair.part_a, system.bodies()[pair.a], part, system.bodies()[pair.b]).gap;
-      all.push_back(drift_ - gap / part.convex->reach), all.push_back(drift_ + gap / part.convex->reach);
+      const Real gap = beyond_held(system, pair);
+      all.push_back(drift_ - gap), all.push_back(pair.overlap + gap);
     }
     add_motors(system, all);
     return all;
