@@ -26,6 +26,7 @@ struct TouchingPoint {
   Vector<Real, Dim> normal{}, place{};  // the normal is from a to b
   Material<Real> material{};            // of both surfaces
   std::optional<ContactFeature<Real, Dim>> feature{};
+  Real gap{};
 };
 
 template <class Real, int Dim>
@@ -39,6 +40,22 @@ class ContactInstant {
   /// Points are sorted by their pairs. Approaches up to `slow` are no impacts where a contact loses energy.
   ContactInstant(System& system, std::span<const Point> points, const Real& slow)
       : system_(system), points_(points), slow_(slow) {}
+
+  /// Moves bodies apart that lie in each other, on the shortest way in the metric of the masses, and no point into
+  /// another. What searches for contacts leave of a gap, some roundings each time, would add up where a body bounces
+  /// ever faster.
+  void separate() {
+    const std::vector<Row> joints = system_.joint_rows();
+    std::vector<Row> rows;
+    std::vector<Real> gaps;
+    for (std::size_t k = 0; k < points_.size(); ++k) rows.push_back(row_of(k)), gaps.push_back(points_[k].gap);
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    const std::vector<Real> ways = complementary_forces<Real>(reduced.matrix(), gaps, Real(0));
+    if (ways.empty()) return;
+    const std::vector<Real> answers = reduced.answers(std::vector<Real>(joints.size()), ways);
+    for (std::size_t r = 0; r < rows.size(); ++r) shift(rows[r], ways[r]);
+    for (std::size_t r = 0; r < joints.size(); ++r) shift(joints[r], answers[r]);
+  }
 
   /// Resolves all impacts. Those that approach are struck together, in rounds, until none approaches: a round can bring
   /// others together. So the energy never grows, and is kept where restitution is 1 and nothing rubs: with u before and
@@ -139,6 +156,17 @@ class ContactInstant {
     const V along = row.direction * impulse;
     system_.bodies()[row.b].push(along, Spin<Real, Dim>(row.lever_b * impulse));
     system_.bodies()[row.a].push(-along, Spin<Real, Dim>(row.lever_a * -impulse));
+  }
+  void shift(const Row& row, const Real& way) {
+    const auto move = [&](std::uint32_t k, const Spin<Real, Dim>& lever, const Real& signed_way) {
+      ExactBody<Real, Dim>& moved = system_.bodies()[k];
+      if (moved.is_fixed()) return;
+      moved.x += row.direction * (signed_way * moved.inverse_mass);
+      const Spin<Real, Dim> turn(moved.inverse_inertia_now * (lever * signed_way));
+      moved.orientation = turned(moved.orientation, turn, Real(1));
+      moved.turn_with_momentum();
+    };
+    move(row.b, row.lever_b, way), move(row.a, row.lever_a, -way);
   }
   void apply(const std::vector<Row>& rows, std::span<const Real> impulses) {
     for (std::size_t r = 0; r < rows.size(); ++r) apply(rows[r], impulses[r]);

@@ -26,6 +26,15 @@ struct MotionBounds {
   Real speed{};
   Vector<Real, Dim> steady{};
   Real acceleration{}, sway{};
+  Real spin{}, turning_on{};      // of the spin and of its derivative
+  Real jerk{}, turning_change{};  // of the second derivatives of velocity and spin, by differences
+};
+
+/// What accelerates a body at an instant.
+template <class Real, int Dim>
+struct Accelerations {
+  Vector<Real, Dim> linear{};
+  Spin<Real, Dim> angular{};
 };
 
 template <class Real, int Dim>
@@ -89,6 +98,18 @@ class RigidFlight {
     take(body, [&, i = k * System::stride]() mutable { return integrator_->x()[i++]; });
   }
   /// @}
+  /// What accelerates body k at a time of the present step, at which it is `body`.
+  [[nodiscard]] Accelerations<Real, Dim> accelerations_at(std::size_t k, const Real& t, const Body& body) const {
+    Accelerations<Real, Dim> found;
+    if (polynomials_.empty()) return found;
+    const Real theta = (t - begin_) / size_;
+    for (std::size_t i = 0; i < Dim; ++i) found.linear[i] = slope(theta, k * System::stride + Dim + i);
+    Spin<Real, Dim> torque;
+    for (std::size_t i = 0; i < torque.size(); ++i)
+      torque[i] = slope(theta, (k + 1) * System::stride - torque.size() + i);
+    found.angular = body.inverse_inertia_now * torque + free_turning(body);
+    return found;
+  }
 
  private:
   template <class Next>
@@ -152,28 +173,24 @@ class RigidFlight {
         const std::size_t v = k * System::stride + Dim + i;
         bounds.steady[i] = (component(Real(1), v) - component(Real(0), v)) / size_;
       }
+      Accelerations<Real, Dim> before;
       for (int sample = 0; sample < samples; ++sample) {
         const Real theta = static_cast<Real>(sample) / (samples - 1);
         body_at(k, begin_ + theta * size_, body);
-        const Real spin = length(body.spin);
-        Real pull(0), torque(0), least(0);
-        for (std::size_t i = 0; i < Dim; ++i) {
-          const Real a = slope(theta, k * System::stride + Dim + i) - bounds.steady[i];
-          pull += a * a;
+        const Accelerations<Real, Dim> here = accelerations_at(k, begin_ + theta * size_, body);
+        const Real spin = length(body.spin), pull = length(here.linear - bounds.steady);
+        const Real turning_on = length(here.angular);
+        bounds.spin = std::max(bounds.spin, Real(1.25) * spin);
+        bounds.turning_on = std::max(bounds.turning_on, Real(1.25) * turning_on);
+        if (sample > 0) {
+          const Real rate = Real(1.5) * (samples - 1) / size_;
+          bounds.jerk = std::max(bounds.jerk, Real(rate * length(here.linear - before.linear)));
+          bounds.turning_change = std::max(bounds.turning_change, Real(rate * length(here.angular - before.angular)));
         }
-        for (std::size_t i = 0; i < Spin<Real, Dim>::size(); ++i) {
-          const Real m = slope(theta, (k + 1) * System::stride - Spin<Real, Dim>::size() + i);
-          torque += m * m;
-          least = std::max(least, body.inverse_inertia_now[i][i]);
-        }
-        for (std::size_t i = 0; i < Spin<Real, Dim>::size(); ++i)
-          for (std::size_t j = 0; j < Spin<Real, Dim>::size(); ++j)
-            if (i != j) least += std::abs(body.inverse_inertia_now[i][j]);
-        const Real turning_on = least * (std::sqrt(torque) + (Dim == 3 ? spin * length(body.momentum) : Real(0)));
+        before = here;
         bounds.speed = std::max(bounds.speed, Real(1.25) * (length(body.v) + spin * r));
-        bounds.sway = std::max(bounds.sway, Real(1.25) * std::sqrt(pull));
-        bounds.acceleration =
-            std::max(bounds.acceleration, Real(1.25) * (std::sqrt(pull) + r * (turning_on + spin * spin)));
+        bounds.sway = std::max(bounds.sway, Real(1.25) * pull);
+        bounds.acceleration = std::max(bounds.acceleration, Real(1.25) * (pull + r * (turning_on + spin * spin)));
       }
     }
   }

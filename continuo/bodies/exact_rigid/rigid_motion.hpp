@@ -224,8 +224,12 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     switch (what.what) {
       case What::step_ends:
         return take_steps({what.index});
-      case What::contact_changes:
-        return resolve(movers_of(what.index));
+      case What::contact_changes: {
+        const std::vector<std::uint32_t> movers = movers_of(what.index);
+        for (const std::uint32_t i : movers)
+          if (Status fault = check_progress(i); !fault) return fault;
+        return resolve(movers);
+      }
       case What::parts_meet:
         return meet(near_.pairs()[what.index]);
       case What::list_ends:
@@ -339,8 +343,17 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   [[nodiscard]] MotionBounds<Real, Dim> bounds_of_motion(std::uint32_t i) const {
     if (group_of_[i] != nowhere) return groups_[group_of_[i]].flight->bounds(place_in_group_[i]);
     MotionBounds<Real, Dim> of_driven;
-    if (i < world_.size()) of_driven.acceleration = squared(begin_[i].spin) * world_.radius[i];
+    if (i >= world_.size()) return of_driven;
+    of_driven.spin = length(begin_[i].spin);
+    of_driven.acceleration = squared(begin_[i].spin) * world_.radius[i];
     return of_driven;
+  }
+  /// Body i, which is there at a time of its present step.
+  [[nodiscard]] BodyInMotion<Real, Dim> moving(std::uint32_t i, const Real& t, const Body& body) const {
+    BodyInMotion<Real, Dim> made{.body = &body, .bounds = bounds_of_motion(i)};
+    if (i < world_.size()) made.reach = world_.radius[i];
+    if (group_of_[i] != nowhere) made.now = groups_[group_of_[i]].flight->accelerations_at(place_in_group_[i], t, body);
+    return made;
   }
   [[nodiscard]] MutualMotion<Real, Dim> mutual_motion(std::uint32_t i, std::uint32_t j) const {
     const MotionBounds<Real, Dim> a = bounds_of_motion(i), b = bounds_of_motion(j);
@@ -407,7 +420,10 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       const Separation<Real, Dim> apart = separation_of(a, body_a, b, body_b);
       const Real longest = to - next.t;
       if (!(longest > Real(0))) return;
-      const Real safe = safe_time(a, body_a, b, body_b, apart.normal, level, motion, longest);
+      Real safe = safe_time(a, body_a, b, body_b, apart.normal, level, motion, longest);
+      if (safe < longest)
+        safe = std::max(
+            safe, safe_time_at_face(a, moving(i, next.t, body_a), b, moving(j, next.t, body_b), apart, level, longest));
       if (safe >= longest) return;
       if (safe <= 4 * rounding * std::abs(next.t) || apart.gap - level <= band_of(body_b, b) / 250) {
         next.what = What::parts_meet;
@@ -453,10 +469,16 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     System instant(world_, bodies_, bodies, now_, is_whole_);
     for (const auto& joint : joints_)
       if (is_gathered_[joint.a] || is_gathered_[joint.b]) instant.add(joint, bodies_);
-    const std::vector<Point> points = find_points(instant, bodies);
+    std::vector<Point> points = find_points(instant, bodies);
+    if (std::ranges::any_of(points, [&](const Point& point) { return is_deep(point); })) {
+      ContactInstant<Real, Dim>(instant, points, Real(0)).separate();
+      for (std::size_t k = 0; k < instant.moving(); ++k) bodies_[bodies[k]] = instant.bodies()[k];
+      points = find_points(instant, bodies);
+    }
     instant.find_free_motion(now_);
     Real pull(0);
     for (std::uint32_t k = 0; k < instant.moving(); ++k) pull = std::max(pull, length(instant.linear(k)));
+    for (const Point& point : points) pull = std::max(pull, pull_at(instant, point));
     ContactInstant<Real, Dim> resolver(instant, points, Real(pull * contact_time_));
     Status status = resolver.strike([&](std::size_t k, const Real& impulse) {
       if (impulse > Real(0)) note_impact(instant, points[k], impulse);
@@ -574,6 +596,19 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     return !are_far(a, body_a, b, body_b, touching_gap(b), Real(0)) &&
            separation_of(a, body_a, b, body_b).gap <= touching_gap(b);
   }
+  /// How fast the free motion accelerates two bodies against each other where they touch: not only forces press, but
+  /// also what turns.
+  [[nodiscard]] static Real pull_at(const System& instant, const Point& point) {
+    if (!point.feature) return Real(0);
+    const Body &a = instant.bodies()[point.a], &b = instant.bodies()[point.b];
+    MotionRow<Real, Dim> row = normal_row(place_of(*point.feature, a, b), a, b);
+    row.a = point.a, row.b = point.b;
+    return std::abs(instant.free_acceleration(row));
+  }
+  /// Whether bodies are farther in each other at a point than rounding puts them.
+  [[nodiscard]] bool is_deep(const Point& point) const {
+    return point.gap < -touching_gap(parts_of(near_.pairs()[point.pair])[1]) / 4;
+  }
   [[nodiscard]] static Real touching_gap(const Part& part) { return std::sqrt(rounding) / 100 * part.convex->reach; }
 
   [[nodiscard]] std::vector<Point> find_points(System& instant, const std::vector<std::uint32_t>& bodies) {
@@ -606,7 +641,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     for (const V& corner : part.convex->core.corners) {
       const V in_body = part.in_body.place(corner), x = body.pose().place(in_body) - n * part.rounding();
       if (dot(n, x) - wall.wall_offset > touching_gap(part)) continue;
-      point.place = x;
+      point.place = x, point.gap = dot(n, x) - wall.wall_offset;
       point.feature = ContactFeature<Real, Dim>{.kind = ContactFeature<Real, Dim>::Kind::face_of_a,
                                                 .point_a = n * wall.wall_offset,
                                                 .point_b = in_body,
@@ -621,7 +656,9 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     const auto found = touching_places(part_a, a, part_b, b, touching_gap(part_b));
     Point point{.pair = p, .normal = found.normal};
     point.material = combined(world_.combine_rule, world_.material[part_a.body], world_.material[part_b.body]);
-    for (const V& place : found.places) {
+    for (std::size_t k = 0; k < found.places.size(); ++k) {
+      const V& place = found.places[k];
+      point.gap = found.gaps[k];
       point.a = instant.local(part_a.body, bodies_), point.b = instant.local(part_b.body, bodies_);
       point.place = place;
       point.feature =

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include <continuo/bodies/exact_rigid/rigid_flight.hpp>
 #include <continuo/bodies/exact_rigid/separation.hpp>
 
 namespace continuo {
@@ -204,6 +205,95 @@ template <class Real, int Dim>
   const Real bent =
       w * w * (place_a + place_b + speed * most_time) + 2 * w * speed + w * length(motion.steady) * most_time;
   return std::max(at_rest, time(curvature - bent, most_time));
+}
+
+/// A time, at most `longest`, for which gap + rate t + bend t^2 / 2 - jerk t^3 / 6 stays above 0, to a hundredth. Where
+/// the gap closes, a bend that slows it down does not count: then the coefficients change their sign once, and there is
+/// one root (Descartes).
+template <class Real>
+[[nodiscard]] Real time_above(const Real& gap, const Real& rate, const Real& bend, const Real& jerk,
+                              const Real& longest) {
+  if (!(gap > Real(0))) return Real(0);
+  const Real bent = rate < Real(0) ? std::min(bend, Real(0)) : bend;
+  const auto is_above = [&](const Real& t) { return gap + t * (rate + t * (bent / 2 - t * (jerk / 6))) > Real(0); };
+  if (is_above(longest)) return longest;
+  Real high = longest, low = longest / 2;
+  while (low > Real(0) && !is_above(low)) high = low, low /= 2;
+  for (int round = 0; round < 6; ++round) (is_above((low + high) / 2) ? low : high) = (low + high) / 2;
+  return low;
+}
+
+/// A body with what accelerates it now, and bounds of its motion from now on.
+template <class Real, int Dim>
+struct BodyInMotion {
+  const ExactBody<Real, Dim>* body = nullptr;
+  Accelerations<Real, Dim> now{};
+  MotionBounds<Real, Dim> bounds{};
+  Real reach{};  // of its points from its centre
+};
+
+/// A time, at most `longest`, for which the corners of a part surely stay above the plane of a face of another body by
+/// more than `beyond`. With N the normal of the face, which turns with it by w, and d a corner from the centre of its
+/// body, the height N . d has the derivatives N' . d + N . d' and N'' . d + 2 N' . d' + N . d'', and the third one is
+/// bounded by those of N and d. What slides along a face after an impact, pressed by nothing, would else be followed by
+/// steps in which its acceleration can do no harm, of the size of the square root of rounding.
+template <class Real, int Dim>
+[[nodiscard]] Real time_above_face(const MovingCorners<Real, Dim>& of_face, const BodyInMotion<Real, Dim>& face,
+                                   const MovingCorners<Real, Dim>& corners, const BodyInMotion<Real, Dim>& other,
+                                   const Vector<Real, Dim>& normal, const Real& beyond, const Real& longest) {
+  using V = Vector<Real, Dim>;
+  const ExactBody<Real, Dim>&f = *face.body, &o = *other.body;
+  const Real w = face.bounds.spin, w_other = other.bounds.spin;
+  const Real most = w + w_other > Real(0) ? std::min(longest, Real(1 / (w + w_other))) : longest;
+  const V turns = turning(f.spin, normal), turns_on = turning(face.now.angular, normal) + turning(f.spin, turns);
+  const Real jerk_of_place =
+      face.bounds.jerk + other.bounds.jerk +
+      other.reach * (w_other * w_other * w_other + 3 * w_other * other.bounds.turning_on + other.bounds.turning_change);
+  const auto acceleration_of = [&](const V& arm) {
+    return V(other.now.linear - face.now.linear + turning(other.now.angular, arm) +
+             turning(o.spin, turning(o.spin, arm)));
+  };
+  Real way(0), speed(0), pull(0);
+  for (std::size_t i = 0; i < corners.size; ++i) {
+    way = std::max(way, length(V(corners.place[i] - f.x)));
+    speed = std::max(speed, length(V(corners.velocity[i] - f.v)));
+    pull = std::max(pull, length(acceleration_of(V(corners.place[i] - o.x))));
+  }
+  pull += jerk_of_place * most, speed += pull * most, way += speed * most;
+  const Real bend_of_normal = w * w + face.bounds.turning_on;
+  const Real jerk_of_normal = w * w * w + 3 * w * face.bounds.turning_on + face.bounds.turning_change;
+  const Real jerk = jerk_of_normal * way + 3 * bend_of_normal * speed + 3 * w * pull + jerk_of_place;
+  Real top = -std::numeric_limits<Real>::infinity(), time = most;
+  for (std::size_t i = 0; i < of_face.size; ++i) top = std::max(top, Real(dot(normal, of_face.place[i] - f.x)));
+  for (std::size_t i = 0; i < corners.size && time > Real(0); ++i) {
+    const V d = corners.place[i] - f.x, moves = corners.velocity[i] - f.v;
+    const V bends = acceleration_of(V(corners.place[i] - o.x));
+    time = time_above(Real(dot(normal, d) - top - beyond), Real(dot(turns, d) + dot(normal, moves)),
+                      Real(dot(turns_on, d) + 2 * dot(turns, moves) + dot(normal, bends)), jerk, time);
+  }
+  return time;
+}
+
+/// As `safe_time`, where a face of one is opposite the other, which is b of a wall; else 0.
+template <class Real, int Dim>
+[[nodiscard]] Real safe_time_at_face(const ExactPart<Real, Dim>& part_a, const BodyInMotion<Real, Dim>& a,
+                                     const ExactPart<Real, Dim>& part_b, const BodyInMotion<Real, Dim>& b,
+                                     const Separation<Real, Dim>& apart, const Real& level, const Real& longest) {
+  const MovingCorners<Real, Dim> of_a(part_a, *a.body), of_b(part_b, *b.body);
+  const Vector<Real, Dim>& normal = apart.normal;
+  const Real beyond = part_a.rounding() + part_b.rounding() + level;
+  const TurningNormal<Real, Dim> along{.normal = normal, .place = of_a.place[0], .velocity = of_a.velocity[0]};
+  if (!part_a.is_wall()) {
+    constexpr Real rounding = 1024 * std::numeric_limits<Real>::epsilon();
+    const Real within =
+        std::max(Real(apart.gap - level), Real(0)) / 8 + rounding * (part_a.convex->reach + part_b.convex->reach);
+    const NearestCorners<Real, Dim> at_a(CornerHeights<Real, Dim>(of_a, along, Real(-1)), within);
+    const NearestCorners<Real, Dim> at_b(CornerHeights<Real, Dim>(of_b, along, Real(1)), within);
+    if (at_b.count >= Dim && at_b.count > at_a.count)
+      return time_above_face(of_b, b, of_a, a, Vector<Real, Dim>(-normal), beyond, longest);
+    if (at_a.count < Dim) return Real(0);
+  }
+  return time_above_face(of_a, a, of_b, b, normal, beyond, longest);
 }
 
 }  // namespace continuo

@@ -81,6 +81,7 @@ template <class Real, int Dim>
 struct TouchingPlaces {
   Vector<Real, Dim> normal{};  // from a to b
   std::vector<Vector<Real, Dim>> places{};
+  std::vector<Real> gaps{};  // there
 };
 template <class Real, int Dim>
 [[nodiscard]] TouchingPlaces<Real, Dim> touching_places(const ExactPart<Real, Dim>& part_a,
@@ -97,8 +98,10 @@ template <class Real, int Dim>
   common.drop_beyond(most);
   if (common.empty()) common.add({axis.on_a, axis.separation, CommonPoint<Real, Dim>::closest});
   found.normal = pose_a.axes * axis.normal;
-  for (const CommonPoint<Real, Dim>& point : common)
+  for (const CommonPoint<Real, Dim>& point : common) {
     found.places.push_back(pose_a.place(point.on_a + axis.normal * convex_a.rounding));
+    found.gaps.push_back(point.separation - convex_a.rounding - convex_b.rounding);
+  }
   return found;
 }
 
