@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -72,8 +73,15 @@ class FrictionModes {
  private:
   static constexpr Real least_margin = std::is_same_v<Real, float> ? Real(-1e-3) : Real(-1e-9);
 
-  /// Begins with all points pressed, and all pairs sticking that may.
+  /// Begins with all points pressed, and all pairs sticking that may. Changes of what is least consistent can go round
+  /// in circles: then those of anything that is not, by chance.
   [[nodiscard]] std::optional<Solution> solve_by_changes() {
+    constexpr int attempts = 12;
+    for (int attempt = 0; attempt < attempts; ++attempt)
+      if (auto found = try_changes(attempt > 0)) return found;
+    return {};
+  }
+  [[nodiscard]] std::optional<Solution> try_changes(bool by_chance) {
     Solution trial;
     trial.presses.assign(points_, true);
     for (const auto& pair : of_.pairs)
@@ -86,18 +94,21 @@ class FrictionModes {
       const std::vector<Real> forces = trial.forces;
       find_margin(trial);
       if (trial.margin >= least_margin) return trial;
-      if (!change_worst(trial, forces)) return {};
+      if (!change_one(trial, forces, by_chance)) return {};
     }
     return {};
   }
-  /// Opens a point that pulls most, or closes one that sinks in, or lets a pair slip or stick. False where there is
+  /// Opens a point that pulls, or closes one that sinks in, or lets a pair slip or stick. False where there is
   /// nothing to change.
-  [[nodiscard]] bool change_worst(Solution& trial, const std::vector<Real>& forces) const {
+  [[nodiscard]] bool change_one(Solution& trial, const std::vector<Real>& forces, bool by_chance) {
     std::vector<Real> most(of_.pairs.size());
     std::size_t worst = all_;
     Real lowest = least_margin;
+    std::uint32_t found = 0;
     const auto consider = [&](std::size_t k, const Real& margin) {
-      if (margin < lowest) lowest = margin, worst = k;
+      if (!(margin < least_margin)) return;
+      const bool is_taken = by_chance ? chance_() % ++found == 0 : margin < lowest;
+      if (is_taken) lowest = margin, worst = k;
     };
     for (std::size_t k = 0; k < points_; ++k) {
       consider(k, trial.presses[k] ? forces[k] / force_ : rate_with(trial, forces, k) / rate_);
@@ -208,6 +219,7 @@ class FrictionModes {
   const Problem& of_;
   std::size_t points_, all_;
   Real rate_{}, force_{};
+  std::minstd_rand chance_;  // the same numbers each time
   std::vector<std::size_t> set_;
   std::vector<Real> sub_, wanted_;
   MinimumNorm<Real> system_;
