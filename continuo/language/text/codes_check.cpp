@@ -274,7 +274,8 @@ and positions only. With friction or a Coriolis force they work at a lower order
          R"(A warning: at the start bodies overlap each other or a wall. Their motion is then not that of hard bodies:
 the exact mode separates those that approach each other, the fast mode pushes all of them apart.
 
-Fix: leave room, or let their groups ignore each other.)"},
+Fix: leave room, or let their groups ignore each other. A body that begins behind ground of facets falls through it: a
+chain is free on the left of the way from point to point, a mesh where the corners of its faces go counter-clockwise.)"},
 };
 
 }  // namespace
