@@ -13,10 +13,10 @@
 #include <continuo/language/check/views/drawing.hpp>
 #include <continuo/language/check/views/plots.hpp>
 #include <continuo/language/check/views/sweep.hpp>
-#include <continuo/language/check/world/finish_world.hpp>
 #include <continuo/language/check/world/forces.hpp>
 #include <continuo/language/check/world/joints.hpp>
 #include <continuo/language/check/world/make_world.hpp>
+#include <continuo/language/check/world/start/finish_world.hpp>
 #include <continuo/language/check/world/world_declarations.hpp>
 #include <continuo/language/check/world/world_names.hpp>
 #include <continuo/language/check/world/world_units.hpp>

@@ -12,6 +12,9 @@
 
 namespace continuo::model::detail {
 
+/// Of a radius: less is round-off of bodies that touch.
+inline constexpr double least_depth = 1e-9;
+
 /// A part of a body at its place: all points within `rounding` of the core.
 template <int Dim>
 struct PlacedCore {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <continuo/language/check/world/start_shapes.hpp>
+#include <continuo/language/check/world/start/start_shapes.hpp>
 #include <continuo/language/described_shape.hpp>
 #include <continuo/shapes/closest_points.hpp>
 #include <continuo/shapes/solid.hpp>

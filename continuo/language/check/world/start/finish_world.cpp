@@ -1,4 +1,4 @@
-// continuo/language/check/world/finish_world.cpp
+// continuo/language/check/world/start/finish_world.cpp
 // Bodies are sorted along one axis, so that only near ones are compared.
 #include <algorithm>
 #include <cmath>
@@ -7,17 +7,15 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/world/finish_world.hpp>
-#include <continuo/language/check/world/start_meshes.hpp>
-#include <continuo/language/check/world/start_shapes.hpp>
+#include <continuo/language/check/world/start/finish_world.hpp>
+#include <continuo/language/check/world/start/start_meshes.hpp>
+#include <continuo/language/check/world/start/start_shapes.hpp>
 #include <continuo/language/world_methods.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
 
 namespace {
-
-constexpr double least_depth = 1e-9;  // of a radius: less is round-off of bodies that touch
 
 /// Where bodies begin.
 struct Places : StartShapes {

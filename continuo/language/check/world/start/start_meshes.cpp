@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/world/start_meshes.hpp>
+#include <continuo/language/check/world/start/start_meshes.hpp>
 #include <continuo/language/described_mesh.hpp>
 #include <continuo/shapes/mesh_check.hpp>
 
@@ -96,7 +96,6 @@ class MeshAtStart {
   }
 
   void look_within() {
-    constexpr double least_depth = 1e-9;  // of a radius: less is round-off of bodies that touch
     std::vector<std::size_t> order(made_.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::erase_if(order, [&](std::size_t i) { return made_.bodies[i].fixed; });

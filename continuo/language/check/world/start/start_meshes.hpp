@@ -3,7 +3,7 @@
 #include <span>
 
 #include <continuo/language/check/names/report.hpp>
-#include <continuo/language/check/world/start_shapes.hpp>
+#include <continuo/language/check/world/start/start_shapes.hpp>
 #include <continuo/language/model.hpp>
 #include <continuo/language/world.hpp>
 

@@ -1,4 +1,4 @@
-// continuo/language/check/world/finish_world.hpp
+// continuo/language/check/world/start/finish_world.hpp
 // The world of the model; and what of it is in order and yet seldom meant: groups without bodies, bodies that begin
 // within each other.
 #pragma once
