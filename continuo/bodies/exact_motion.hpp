@@ -63,6 +63,12 @@ class ExactMotion {
 
   /// Advances the world with all its bodies to time t. On failure the world is at the time of the last event.
   [[nodiscard]] Status advance_to(const Real& t);
+  /// Advances by h.
+  [[nodiscard]] Status step(const Real& h);
+  /// Those of the next call of advance_to.
+  [[nodiscard]] const ExactOptions<Real>& options() const { return options_; }
+  /// Changes the options, and predicts all events again.
+  void set_options(const ExactOptions<Real>& options);
   /// Predicts all events again from the present state of the world.
   void refresh();
 

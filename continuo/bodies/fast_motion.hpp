@@ -36,6 +36,7 @@ struct FastOptions {
   Real sleep_after = Real(0);     // bodies slower than sleep_speed for so long fall asleep; 0: never
   Real sleep_speed = Real(0.05);  // of centre and rim
   int threads = 1;                // at most; the results are the same to the last bit for any number
+  friend bool operator==(const FastOptions&, const FastOptions&) = default;
 };
 
 /// The steps, built pair lists and impacts so far; the contacts, colours (groups of contacts that share no body) and
@@ -68,6 +69,16 @@ class FastMotion {
   /// Advances by one step. Fails for options or bodies that make no sense. On failure the world is as it was before the
   /// step.
   [[nodiscard]] Status advance();
+  /// Advances by one step of the size h, which is that of later steps, too. Another size than before begins anew.
+  [[nodiscard]] Status step(const Real& h);
+  /// Advances by whole steps until the time is not before t; a rounding beyond the end of a step is that end. Fails for
+  /// a time that is not finite or before the present, and as `advance`: the world is then at the end of the last step.
+  [[nodiscard]] Status advance_to(const Real& t);
+  /// Those of the next step.
+  [[nodiscard]] const FastOptions<Real>& options() const;
+  /// Changes the options from the next step on. Another step, integrator, number of substeps or threads, and other
+  /// recording or sleep, begin anew, as `refresh` does.
+  void set_options(const FastOptions<Real>& options);
   /// Starts anew from the present state of the world, with all bodies awake.
   void refresh();
 

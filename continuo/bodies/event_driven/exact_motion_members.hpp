@@ -62,6 +62,15 @@ Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   return engine_->advance_to(t);
 }
 template <class Real, int Dim>
+Status ExactMotion<Real, Dim>::step(const Real& h) {
+  return advance_to(world_->time + h);
+}
+template <class Real, int Dim>
+void ExactMotion<Real, Dim>::set_options(const ExactOptions<Real>& options) {
+  options_ = options;
+  refresh();
+}
+template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
   kind_ = kind();

@@ -1,5 +1,6 @@
 // The members of FastMotion, for the two sources that instantiate it: each takes half a minute to compile.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -39,6 +40,32 @@ struct FastMotion<Real, Dim>::Steppers {
     with_stepper([](auto& stepper) { stepper.renew(); });
   }
 
+  /// What a stepper has made for its steps, threads and records stays where these do.
+  void set(const FastOptions<Real>& chosen) {
+    FastOptions<Real> as_before = chosen;
+    as_before.hertz = options.hertz, as_before.damping = options.damping;
+    as_before.fastest_push = options.fastest_push, as_before.sleep_speed = options.sleep_speed;
+    const bool goes_on = as_before == options;
+    options = chosen;
+    if (goes_on) return with_stepper([&](auto& stepper) { stepper.set_options(chosen); });
+    const FastStatistics so_far = with_stepper([](auto& stepper) { return stepper.statistics; });
+    any.reset(), balls.reset();
+    choose();
+    with_stepper([&](auto& stepper) { stepper.statistics = so_far; });
+  }
+  [[nodiscard]] Status advance_to(const Real& t) {
+    if (!(t >= world.time) || !(t - t == Real(0)))
+      return invalid_input("the time to advance to must be finite and not before the present");
+    if (!(options.step > Real(0))) return advance();  // which says what is wrong
+    // In double, as many steps of a single one have no number of their own.
+    const double steps = std::ceil(static_cast<double>(t - world.time) / static_cast<double>(options.step) - 1e-9);
+    constexpr double most = 1e15;
+    if (!(steps <= most)) return invalid_input("the time to advance to is more than 1e15 steps away");
+    for (double k = 0; k < steps; ++k)
+      if (Status status = advance(); !status) return status;
+    return {};
+  }
+
   World<Real, Dim>& world;
   FastOptions<Real> options;
   std::optional<Stepper> balls;
@@ -57,6 +84,25 @@ FastMotion<Real, Dim>::~FastMotion() = default;
 template <class Real, int Dim>
 Status FastMotion<Real, Dim>::advance() {
   return steppers_->advance();
+}
+template <class Real, int Dim>
+Status FastMotion<Real, Dim>::step(const Real& h) {
+  FastOptions<Real> of_size = options();
+  of_size.step = h;
+  if (of_size != options()) set_options(of_size);
+  return advance();
+}
+template <class Real, int Dim>
+Status FastMotion<Real, Dim>::advance_to(const Real& t) {
+  return steppers_->advance_to(t);
+}
+template <class Real, int Dim>
+const FastOptions<Real>& FastMotion<Real, Dim>::options() const {
+  return steppers_->options;
+}
+template <class Real, int Dim>
+void FastMotion<Real, Dim>::set_options(const FastOptions<Real>& options) {
+  steppers_->set(options);
 }
 template <class Real, int Dim>
 void FastMotion<Real, Dim>::refresh() {

@@ -45,6 +45,8 @@ class RigidStepper {
     contacts_.clear();
     sleep_ = {};
   }
+  /// Of the same step, substeps, integrator, threads and records.
+  void set_options(const FastOptions<Real>& options) { options_ = options; }
   [[nodiscard]] Status advance() {
     Status status;
     team_.run([&] { status = step(); });

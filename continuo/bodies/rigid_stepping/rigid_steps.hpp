@@ -22,6 +22,7 @@ class RigidSteps {
   ~RigidSteps();
 
   void renew();
+  void set_options(const FastOptions<Real>& options);
   [[nodiscard]] Status advance();
   [[nodiscard]] Real deepest_overlap() const;
   [[nodiscard]] std::size_t memory() const;

@@ -15,6 +15,10 @@ RigidSteps<Real, Dim>::RigidSteps(World<Real, Dim>& world, const FastOptions<Rea
 template <class Real, int Dim>
 RigidSteps<Real, Dim>::~RigidSteps() = default;
 template <class Real, int Dim>
+void RigidSteps<Real, Dim>::set_options(const FastOptions<Real>& options) {
+  stepper_->set_options(options);
+}
+template <class Real, int Dim>
 void RigidSteps<Real, Dim>::renew() {
   stepper_->renew();
 }

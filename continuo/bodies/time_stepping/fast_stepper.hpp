@@ -51,6 +51,8 @@ class FastMotion<Real, Dim>::Stepper {
     make_list();
   }
 
+  /// Of the same step, substeps, integrator, threads and records.
+  void set_options(const FastOptions<Real>& options) { options_ = options; }
   [[nodiscard]] Status advance() {
     Status status;
     team_.run([&] { status = step(); });
