@@ -9,8 +9,10 @@
 #include <optional>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include <continuo/bodies/exact_rigid/lemke.hpp>
 #include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/rigid_system.hpp>
 
@@ -37,9 +39,9 @@ struct FrictionSolution {
   Real margin{};                 // of the inequality that holds least, in units of forces and rates
 };
 
-/// First from all contacts closed and sticking, one after the other is changed where it is not consistent. Where that
-/// does not end, all combinations are tried, 2^points times 3^pairs. Nothing where none is consistent, or where there
-/// are too many.
+/// Of few contacts all combinations are tried, 2^points times 3^pairs. Of many, first from all contacts closed and
+/// sticking, one after the other is changed where it is not consistent; where that does not end, the linear
+/// complementarity problem of all forces is solved. Nothing where no combination was found that is consistent.
 template <class Real>
 class FrictionModes {
  public:
@@ -73,15 +75,77 @@ class FrictionModes {
  private:
   static constexpr Real least_margin = std::is_same_v<Real, float> ? Real(-1e-3) : Real(-1e-9);
 
-  /// Begins with all points pressed, and all pairs sticking that may. Changes of what is least consistent can go round
-  /// in circles: then those of anything that is not, by chance.
+  /// Changes of what is least consistent can go round in circles: then by pivots, and last by changes of anything that
+  /// is not consistent, by chance.
   [[nodiscard]] std::optional<Solution> solve_by_changes() {
     constexpr int attempts = 12;
-    for (int attempt = 0; attempt < attempts; ++attempt)
-      if (auto found = try_changes(attempt > 0)) return found;
+    if (auto found = try_changes(false)) return found;
+    for (int attempt = 0; attempt < attempts / 4; ++attempt)
+      if (auto found = try_pivots(attempt > 0)) return found;
+    for (int attempt = 1; attempt < attempts; ++attempt)
+      if (auto found = try_changes(true)) return found;
     return {};
   }
-  [[nodiscard]] std::optional<Solution> try_changes(bool by_chance) {
+  /// The pairs that may stick have two forces across, one each way, and a slip (D. E. Stewart, "Rigid-body dynamics
+  /// with friction and impact", 2000): of each point the normal force, then of each such pair these three. The forces
+  /// of friction of the others are those of their slip. Other covering vectors take other ways to a solution.
+  [[nodiscard]] std::optional<Solution> try_pivots(bool by_chance) {
+    Solution trial = first_trial();
+    std::vector<std::size_t> sticking;
+    for (std::size_t p = 0; p < of_.pairs.size(); ++p)
+      if (trial.rubbing[p] == Rubbing::sticks) sticking.push_back(p);
+    const std::size_t n = points_ + 3 * sticking.size();
+    std::vector<Real> m(n * n), q(n), cover(n, Real(1));
+    const Real per_force = force_ / rate_;
+    for (std::size_t k = 0; k < points_; ++k) {
+      q[k] = of_.rates[k] / rate_;
+      for (std::size_t row = 0; row < points_; ++row) m[k * n + row] = change(trial, row, k) * per_force;
+    }
+    for (std::size_t s = 0; s < sticking.size(); ++s) {
+      const std::size_t across = points_ + sticking[s], plus = points_ + 3 * s, minus = plus + 1, slip = plus + 2;
+      q[plus] = of_.rates[across] / rate_, q[minus] = -q[plus];
+      for (std::size_t k = 0; k < points_; ++k) {
+        m[k * n + plus] = change(trial, across, k) * per_force, m[k * n + minus] = -m[k * n + plus];
+        if (of_.pair_of_point[k] == sticking[s]) m[k * n + slip] = of_.pairs[sticking[s]].friction;
+        m[plus * n + k] = entry(k, across) * per_force, m[minus * n + k] = -m[plus * n + k];
+      }
+      for (std::size_t t = 0; t < sticking.size(); ++t) {
+        const std::size_t other = points_ + 3 * t;
+        const Real change_across = entry(points_ + sticking[t], across) * per_force;
+        m[plus * n + other] = m[minus * n + other + 1] = change_across;
+        m[plus * n + other + 1] = m[minus * n + other] = -change_across;
+      }
+      m[slip * n + plus] = m[slip * n + minus] = Real(1);
+      m[plus * n + slip] = m[minus * n + slip] = Real(-1);
+    }
+    if (by_chance)
+      for (Real& part : cover) part += static_cast<Real>(chance_()) / static_cast<Real>(std::minstd_rand::max());
+    const auto z = Lemke<Real>(m, q, cover).solve();
+    if (!z) return {};
+    return modes_of(*z, sticking, std::move(trial));
+  }
+  /// The combination that these unknowns of the complementarity problem have, with its forces.
+  [[nodiscard]] std::optional<Solution> modes_of(const std::vector<Real>& z, const std::vector<std::size_t>& sticking,
+                                                 Solution trial) {
+    std::vector<bool> is_pressed(of_.pairs.size(), false);
+    for (std::size_t k = 0; k < points_; ++k) {
+      trial.presses[k] = z[k] > Real(0);
+      if (trial.presses[k]) is_pressed[of_.pair_of_point[k]] = true;
+    }
+    for (std::size_t s = 0; s < sticking.size(); ++s) {
+      const std::size_t plus = points_ + 3 * s;
+      if (z[plus + 2] > Real(0))
+        trial.rubbing[sticking[s]] = z[plus] > z[plus + 1] ? Rubbing::backwards : Rubbing::forwards;
+    }
+    for (std::size_t p = 0; p < of_.pairs.size(); ++p)
+      if (!is_pressed[p]) trial.rubbing[p] = Rubbing::none;
+    find_forces(trial);
+    find_margin(trial);
+    if (!(trial.margin >= least_margin)) return {};
+    return trial;
+  }
+  /// All points pressed, and all pairs sticking that may.
+  [[nodiscard]] Solution first_trial() const {
     Solution trial;
     trial.presses.assign(points_, true);
     for (const auto& pair : of_.pairs)
@@ -89,6 +153,10 @@ class FrictionModes {
                               : pair.may_stick           ? Rubbing::sticks
                               : pair.may_go_forwards     ? Rubbing::forwards
                                                          : Rubbing::backwards);
+    return trial;
+  }
+  [[nodiscard]] std::optional<Solution> try_changes(bool by_chance) {
+    Solution trial = first_trial();
     for (std::size_t round = 0; round < 20 * (points_ + of_.pairs.size()); ++round) {
       find_forces(trial);
       const std::vector<Real> forces = trial.forces;
