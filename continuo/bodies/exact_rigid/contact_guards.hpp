@@ -188,6 +188,7 @@ class ContactGuards {
       const auto &a = system.bodies()[one.a], &b = system.bodies()[one.b];
       const Real slip = across_row(place_of(one.feature, a, b), a, b).rate_of(a, b);
       all.push_back((one.rubbing == Rubbing::forwards ? slip : -slip) / speed_);
+      all.push_back(system.is_stable() ? Real(1) : Real(-1));
     }
   }
   void add_motors(const System& system, std::vector<Real>& all) const {

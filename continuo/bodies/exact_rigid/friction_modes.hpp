@@ -39,6 +39,11 @@ struct FrictionSolution {
   Real margin{};                 // of the inequality that holds least, in units of forces and rates
 };
 
+/// Friction can make a force that presses two parts together move them towards each other (Painleve's paradox). Forces
+/// that belong together only so would not last: the least give in a contact makes them grow or vanish. The determinant
+/// of their equations is then below 0, and they are no solution (F. Genot, B. Brogliato, "New results on Painleve
+/// paradoxes", European Journal of Mechanics A 18, 1999).
+///
 /// Of few contacts all combinations are tried, 2^points times 3^pairs. Of many, first from all contacts closed and
 /// sticking, one after the other is changed where it is not consistent; where that does not end, the linear
 /// complementarity problem of all forces is solved. Nothing where no combination was found that is consistent.
@@ -256,9 +261,10 @@ class FrictionModes {
     system_.solve(wanted_);
     trial.forces.assign(all_, Real(0));
     for (std::size_t k = 0; k < set_.size(); ++k) trial.forces[set_[k]] = wanted_[k];
+    is_stable_ = system_.determinant_sign() >= 0;
   }
   void find_margin(Solution& trial) const {
-    Real margin = std::numeric_limits<Real>::infinity();
+    Real margin = is_stable_ ? std::numeric_limits<Real>::infinity() : -std::numeric_limits<Real>::infinity();
     const auto rate = [&](std::size_t row) { return rate_with(trial, trial.forces, row) / rate_; };
     std::vector<Real> most(of_.pairs.size());
     for (std::size_t k = 0; k < points_; ++k) {
@@ -286,6 +292,7 @@ class FrictionModes {
 
   const Problem& of_;
   std::size_t points_, all_;
+  bool is_stable_ = true;  // the combination whose forces were found last
   Real rate_{}, force_{};
   std::minstd_rand chance_;  // the same numbers each time
   std::vector<std::size_t> set_;

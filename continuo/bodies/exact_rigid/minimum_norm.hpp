@@ -35,6 +35,8 @@ class MinimumNorm {
   }
   /// The number of equations that do not depend on each other.
   [[nodiscard]] std::size_t rank() const { return rank_; }
+  /// The sign of the determinant, 0 where equations depend on each other.
+  [[nodiscard]] int determinant_sign() const { return rank_ == n_ ? sign_ : 0; }
   /// The numbers of such columns, for as many of them as the rank.
   [[nodiscard]] std::span<const std::size_t> independent() const { return std::span(order_).first(rank_); }
 
@@ -70,6 +72,7 @@ class MinimumNorm {
     // What depends on others leaves the rounding of the sums; what does not is far above it.
     const Real least =
         std::sqrt(std::numeric_limits<Real>::epsilon() * std::sqrt(std::numeric_limits<Real>::epsilon()));
+    sign_ = 1;
     for (rank_ = 0; rank_ < n_; ++rank_) {
       const std::size_t k = rank_;
       std::size_t pivot = k;
@@ -84,8 +87,10 @@ class MinimumNorm {
       if (pivot != k) {
         std::swap(order_[k], order_[pivot]);
         std::swap_ranges(&at(0, k), &at(0, k) + n_, &at(0, pivot));
+        sign_ = -sign_;
       }
       diagonal_[k] = at(k, k) > Real(0) ? -size : size;
+      if (diagonal_[k] > Real(0)) sign_ = -sign_;  // the determinant of a reflection is -1
       at(k, k) -= diagonal_[k];
       beta_[k] = -1 / (diagonal_[k] * at(k, k));
       for (std::size_t j = k + 1; j < n_; ++j) {
@@ -113,6 +118,7 @@ class MinimumNorm {
   }
 
   std::size_t n_ = 0, rank_ = 0;
+  int sign_ = 1;
   std::vector<Real> a_, scale_, diagonal_, beta_, right_beta_, in_order_;
   std::vector<std::size_t> order_;
 };

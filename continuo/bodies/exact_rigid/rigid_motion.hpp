@@ -293,10 +293,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   }
   [[nodiscard]] Status take_step(std::uint32_t index) {
     Group& group = groups_[index];
-    if (!group.flight->advance())
-      return cannot_continue("the path cannot be followed beyond t = " + std::to_string(group.flight->end()) + ": " +
-                             std::string(to_string(group.flight->outcome().ending)) + ", " +
-                             group.flight->outcome().hint);
+    if (!group.flight->advance()) return ended(*group.flight);
     if (group.flight->end() < until_ || step_ == Real(0)) step_ = group.flight->step_size();
     const std::vector<std::uint32_t> movers = movers_of(index);
     for (const std::uint32_t i : movers) stamp_[i] = ++foreseen_;
@@ -310,6 +307,19 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (leaves < end) queue_.push({leaves, What::list_ends, 0, 0, 0});
     }
     return {};
+  }
+  /// Why a flight cannot go on.
+  [[nodiscard]] static Status ended(Flight& flight) {
+    constexpr Real jammed = std::is_same_v<Real, float> ? Real(1e-2) : Real(1e-3);
+    const std::string where = "the path cannot be followed beyond t = " + std::to_string(flight.end()) + ": ";
+    X state;
+    flight.at(flight.end(), state);
+    flight.system().evaluate(flight.end(), state);
+    if (flight.system().least_parting() < jammed)
+      return cannot_continue(where +
+                             "the forces of a contact that slips grow beyond all bounds, bodies jam (Painleve's "
+                             "paradox); with less friction they would slide on");
+    return cannot_continue(where + std::string(to_string(flight.outcome().ending)) + ", " + flight.outcome().hint);
   }
   /// Body i at a time of its present step. It is kept for all that asks for the same instant.
   [[nodiscard]] const Body& body_at(std::uint32_t i, const Real& t) const {

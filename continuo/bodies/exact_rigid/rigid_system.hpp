@@ -188,6 +188,20 @@ class RigidSystem {
   /// @{
   [[nodiscard]] Real press(std::size_t k) const { return force_of_row_[normal_of_[k]]; }
   [[nodiscard]] Real stick(std::size_t k) const { return force_of_row_[normal_of_[k] + 1]; }
+  /// Whether the least give in the contacts would leave these forces what they are: see FrictionModes.
+  [[nodiscard]] bool is_stable() const { return rows_.empty() || system_.determinant_sign() >= 0; }
+  /// How fast a force parts two bodies at a contact that slips, of how fast it would without its friction: the least of
+  /// all contacts, 1 where none slips. No joints count. At 0 and below, friction jams the bodies.
+  [[nodiscard]] Real least_parting() const {
+    Real least(1);
+    for (const std::size_t r : normal_of_) {
+      Row smooth = rows_[r];
+      smooth.rub = {}, smooth.rub_lever_a = {}, smooth.rub_lever_b = {};
+      const Real free = response(smooth, smooth, bodies_.data());
+      if (free > Real(0)) least = std::min(least, Real(response(rows_[r], rows_[r], bodies_.data()) / free));
+    }
+    return least;
+  }
   struct JointLoad {
     V force{};
     S torque{};
