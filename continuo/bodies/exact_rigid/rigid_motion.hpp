@@ -302,20 +302,31 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     group.change = never;
     if (!group.guards.is_empty()) group.change = group.guards.first_change(*group.flight).value_or(never);
     if (group.change < until_) queue_.push({group.change, What::contact_changes, index, stamp_[movers.front()], 0});
+    if (group.change == never && end < until_ && jams(*group.flight)) return ended(*group.flight);
     for (const std::uint32_t i : movers) {
       const Real leaves = near_.leaves_at(i, now_, group.flight->bounds(place_in_group_[i]).speed);
       if (leaves < end) queue_.push({leaves, What::list_ends, 0, 0, 0});
     }
     return {};
   }
+  /// RigidSystem::least_parting at the end of a step.
+  [[nodiscard]] static Real parting_at_end(Flight& flight) {
+    X state;
+    flight.at(flight.end(), state);
+    flight.system().evaluate(flight.end(), state);
+    return flight.system().least_parting();
+  }
+  /// Whether the forces of friction grow beyond all bounds within a time that does not matter. Their rounding, which is
+  /// that of angles by how fast they part bodies, would make thousands of steps of what is left.
+  [[nodiscard]] bool jams(Flight& flight) const {
+    constexpr Real least = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-9);
+    return flight.step_size() < contact_time_ / 1000 && std::abs(parting_at_end(flight)) < least;
+  }
   /// Why a flight cannot go on.
   [[nodiscard]] static Status ended(Flight& flight) {
     constexpr Real jammed = std::is_same_v<Real, float> ? Real(1e-2) : Real(1e-3);
     const std::string where = "the path cannot be followed beyond t = " + std::to_string(flight.end()) + ": ";
-    X state;
-    flight.at(flight.end(), state);
-    flight.system().evaluate(flight.end(), state);
-    if (flight.system().least_parting() < jammed)
+    if (parting_at_end(flight) < jammed)
       return cannot_continue(where +
                              "the forces of a contact that slips grow beyond all bounds, bodies jam (Painleve's "
                              "paradox); with less friction they would slide on");
