@@ -15,6 +15,7 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <string>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -97,7 +98,7 @@ Ended followed(const Rod& rod, State s, Wide until) {
   const auto guards = [&](const State& at) {
     return std::array{load(rod, at), rod.side * at.v, until - at.t, room(rod, at.q)};
   };
-  const Wide step = std::sqrt(Wide(rod.half()) / g) / 40;
+  const Wide step = std::sqrt(Wide(rod.half()) / g) / 120;
   while (parting(rod, s.q) > smallest) {
     const State next = after(rod, s, step);
     Wide first = step;
@@ -126,20 +127,23 @@ std::optional<State> stuck(const Rod& rod, State s, Wide duration) {
   constexpr int steps = 100;
   const Wide l = rod.half(), h = duration / steps;
   const auto turning_on = [&](Wide q) { return -g * std::cos(q) / (l + l / 3); };
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0;; ++k) {
     const Wide a = turning_on(s.q), c = std::cos(s.q), n = std::sin(s.q);
     if (!(room(rod, s.q) > 0)) return {};
     const Wide press = g + l * (c * a - n * s.w * s.w), hold = -l * (n * a + c * s.w * s.w);
     if (!(press > 0) || !(std::abs(hold) < Wide(rod.friction) * press)) return {};
+    if (k == steps) return s;
     const Wide k1 = s.w, l1 = a, k2 = s.w + h / 2 * l1, l2 = turning_on(s.q + h / 2 * k1), k3 = s.w + h / 2 * l2;
     const Wide l3 = turning_on(s.q + h / 2 * k2), k4 = s.w + h * l3, l4 = turning_on(s.q + h * k3);
     s = {s.q + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), s.w + h / 6 * (l1 + 2 * l2 + 2 * l3 + l4), 0, s.t + h};
   }
-  return s;
 }
 /// A short time after the rod came off or stopped, where it does the same all the while: flies, sticks, or slips back.
 std::optional<State> continued(const Rod& rod, const Ended& from, Wide duration) {
-  if (from.end == End::comes_off) return flown(from.at, rod.half(), duration);
+  if (from.end == End::comes_off) {
+    const State end = flown(from.at, rod.half(), duration);
+    return end.q < right_angle ? std::optional(end) : std::nullopt;  // beyond, it falls back at once
+  }
   if (const auto held = stuck(rod, from.at, duration)) return held;
   Rod back = rod;
   back.side = -rod.side;
@@ -245,6 +249,14 @@ void check_change(const Rod& rod, const State& start, const Ended& end, int& con
   ++continuations;
   expect_near(then.at, *expected);
 }
+/// Where the rod comes off or stops with A nearly 0, it turns ever faster in a time and by an angle below rounding: it
+/// may as well jam there.
+void check_beside_a_jam(const Rod& rod, const State& start, const State& end) {
+  const Moved made = moved_to(rod, start, end.t);
+  EXPECT_TRUE(made.status || made.status.message.find("Painleve") != std::string::npos) << describe(made.status);
+  EXPECT_NEAR(static_cast<double>(made.at.t - end.t), 0, 1e-8);
+  EXPECT_NEAR(static_cast<double>(made.at.q - end.q), 0, 1e-8);
+}
 /// The forces grow beyond all bounds, and no motion goes on from there; angle and time have a limit.
 void check_jam(const Rod& rod, const State& start, const State& end) {
   const Moved ended = moved_to(rod, start, end.t + 0.1L);
@@ -263,7 +275,7 @@ TEST(Painleve, SlidesUntilItComesOffStopsOrJams) {
   for (int k = 0; k < starts; ++k) {
     SCOPED_TRACE(k);
     const int kind = k % 3;
-    Rod rod = kind == 0 ? any.rod(0.2, 4.0 / 3) : kind == 1 ? any.rod(4.0 / 3, jam) : any.rod(jam + 0.05, 3);
+    Rod rod = kind == 0 ? any.rod(0.2, 4.0 / 3) : kind == 1 ? any.rod(4.0 / 3, jam - 0.05) : any.rod(jam + 0.05, 3);
     if (k % 4 == 0) rod.side = 1;
     const State start = any.sliding(rod);
     const Ended end = followed(rod, start, 1);
@@ -272,6 +284,10 @@ TEST(Painleve, SlidesUntilItComesOffStopsOrJams) {
       const Wide before = end.at.t * 0.9L;
       expect_near(moved_to(rod, start, before).at, followed(rod, start, before).at);
       check_jam(rod, start, end.at);
+      continue;
+    }
+    if (parting(rod, end.at.q) < 1e-5) {
+      check_beside_a_jam(rod, start, end.at);
       continue;
     }
     const Moved made = moved_to(rod, start, end.at.t);
