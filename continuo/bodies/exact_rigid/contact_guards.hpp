@@ -51,6 +51,7 @@ class ContactGuards {
     small_.assign(last_.size(), small);
     for (std::size_t k = 0; k < corners_.size(); ++k)
       if (corners_[k].is_held) small_[first_corner_ + k] = drift_;
+    allow_slow_slips(system);
     armed_.resize(last_.size());
     for (std::size_t i = 0; i < last_.size(); ++i) armed_[i] = last_[i] > small_[i];
   }
@@ -101,6 +102,15 @@ class ContactGuards {
     };
     if (!(level - value_near <= Real(0))) return far;
     return enclose_root<Real>(beyond, near, far, level - value_near, level - value_far).far;
+  }
+  /// What still slips slowly the other way where it begins to slip is on its way to 0: no change of the contact.
+  void allow_slow_slips(const System& system) {
+    std::size_t guard = system.contacts().size();
+    for (const auto& one : system.contacts()) {
+      if (!one.is_first || one.rubbing == Rubbing::none) continue;
+      if (one.rubbing != Rubbing::sticks) small_[guard] = std::max(small, -2 * last_[guard]);
+      ++guard;
+    }
   }
   /// The corners of the other body that may come to lie on the face of a contact.
   void find_corners(const System& system, const ActingContact<Real, Dim>& contact, const WatchedPair<Real, Dim>& pair) {
