@@ -183,8 +183,10 @@ class ContactGuards {
     add_motors(system, all);
     return all;
   }
+  /// Of each pair that rubs its friction or its slip, then whether the forces of all that slip are stable.
   void add_rubbing(const System& system, std::vector<Real>& all) const {
     const auto contacts = system.contacts();
+    bool is_slipping = false;
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const auto& one = contacts[k];
       if (!one.is_first || one.rubbing == Rubbing::none) continue;
@@ -198,8 +200,9 @@ class ContactGuards {
       const auto &a = system.bodies()[one.a], &b = system.bodies()[one.b];
       const Real slip = across_row(place_of(one.feature, a, b), a, b).rate_of(a, b);
       all.push_back((one.rubbing == Rubbing::forwards ? slip : -slip) / speed_);
-      all.push_back(system.is_stable() ? Real(1) : Real(-1));
+      is_slipping = true;
     }
+    if (is_slipping) all.push_back(system.is_stable() ? Real(1) : Real(-1));
   }
   void add_motors(const System& system, std::vector<Real>& all) const {
     for (std::size_t j = 0; j < system.joints().size(); ++j) {
