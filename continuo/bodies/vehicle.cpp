@@ -31,6 +31,27 @@ Vector<Real, Dim> without(const VehicleForce<Real, Dim>& force, const Vector<Rea
   return there == force.sum ? force.others : Vector<Real, Dim>(there - force.force);
 }
 
+/// The impulses of friction of at most this size that come nearest to those wanted, which would end all sliding, in the
+/// metric of how much they change it: what sliding is left is then against them, by Coulomb's law. They are
+/// give*wanted/(give + m) with the m > 0 at which the size is reached, found by Newton's method on its inverse, which
+/// converges from 0 without a step too far (J. J. More, D. C. Sorensen, "Computing a trust region step", SIAM J. Sci.
+/// Stat. Comput. 4, 1983).
+template <class Real>
+std::array<Real, 2> within(const std::array<Real, 2>& wanted, const std::array<Real, 2>& give, const Real& most) {
+  if (!(most > Real(0))) return {};
+  Real m(0);
+  std::array<Real, 2> found = wanted;
+  for (int round = 0; round < 30; ++round) {
+    const Real size = std::hypot(found[0], found[1]);
+    if (!(size > most * (1 + 4 * std::numeric_limits<Real>::epsilon()))) return found;
+    const Real slope = found[0] * found[0] / (give[0] + m) + found[1] * found[1] / (give[1] + m);
+    m += (size - most) / most * (size * size / slope);
+    for (std::size_t i = 0; i < 2; ++i) found[i] = give[i] * wanted[i] / (give[i] + m);
+  }
+  const Real part = most / std::hypot(found[0], found[1]);
+  return {found[0] * part, found[1] * part};
+}
+
 /// Where a wheel touches the ground.
 template <class Real, int Dim>
 struct WheelContact {
@@ -127,20 +148,24 @@ class VehicleStep {
       states_[k].steer = controls_.steer * vehicle_.wheels[k].greatest_steer;
       frames_.push_back(frame_of(k));
       const WheelRays<Real, Dim> rays(vehicle_.wheels[k], frames_[k]);
-      const auto hits = queries.first_hits(rays.rays(), filter);
+      auto hits = queries.first_hits(rays.rays(), filter);
       if (!hits) return hits.status();
+      for (std::size_t r = 0; world_.has_traits() && r < hits->size(); ++r)
+        if (is_sensor((*hits)[r]))
+          if (Status fault = look_through(queries, rays.rays()[r], filter, (*hits)[r]); !fault) return fault;
       const auto contact = rays.contact(*hits);
       prepare(k, contact ? &*contact : nullptr);
     }
     return {};
   }
 
-  /// Projected Gauss-Seidel on the impulses until they stand still: those of a few wheels on one body do so soon.
+  /// Projected Gauss-Seidel on the impulses until they stand still, which those of a few wheels on one body do soon,
+  /// unless tyres that hold share what none of them needs, or slide by much friction.
   void solve() {
     constexpr int most_sweeps = 500;
     const Real enough = 4 * std::numeric_limits<Real>::epsilon();
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      Real change(0), sum(0);
+      Real change(0), sum(weight_);
       for (Contact& contact : contacts_) {
         const Real before = contact.spring.impulse + contact.stop.impulse;
         press(contact);
@@ -148,7 +173,8 @@ class VehicleStep {
         change += std::abs(load - before), sum += std::abs(load);
       }
       for (std::size_t k = 0; k < axles_.size(); ++k) change += roll(k);
-      if (!(change > enough * sum)) return;
+      residual_ = change > Real(0) ? change / sum : Real(0);
+      if (!(residual_ > enough)) return;
     }
   }
 
@@ -190,6 +216,7 @@ class VehicleStep {
       states_[k].turn += (axles_[k].spin - dot(frames_[k].axle, chassis().spin)) * h_;
     }
     vehicle.states = states_;
+    vehicle.residual = residual_;
   }
 
  private:
@@ -212,6 +239,19 @@ class VehicleStep {
     Real spin{}, target{}, low{}, high{}, impulse{};
     std::size_t contact = 0;  // into contacts_; beyond these in the air
   };
+
+  [[nodiscard]] bool is_sensor(const RayHit<Real, Dim>& hit) const {
+    return world_.contains(hit.body) && world_.traits(world_.index(hit.body)).is_sensor;
+  }
+  /// What a ray hits behind sensors, which push nothing.
+  [[nodiscard]] Status look_through(const Queries<Real, Dim>& queries, const Ray<Real, Dim>& ray,
+                                    const QueryFilter& filter, RayHit<Real, Dim>& hit) const {
+    const auto all = queries.all_hits(ray, filter);
+    if (!all) return all.status();
+    const auto solid = std::ranges::find_if(*all, [&](const auto& one) { return !is_sensor(one); });
+    hit = solid != all->end() ? *solid : RayHit<Real, Dim>{.distance = std::numeric_limits<Real>::infinity()};
+    return {};
+  }
 
   /// The place of a body of the world, or of what is no body.
   std::size_t add_body(std::size_t index) {
@@ -388,8 +428,7 @@ class VehicleStep {
     Axle& axle = axles_[k];
     if (std::isfinite(axle.target) && axle.low < axle.high) {
       const Real of_tyre = 1 / contact.along.mass, of_axle = mobility_of_axle(k);
-      const Real both = -(vehicle_.wheels[k].radius / vehicle_.wheels[k].inertia +
-                          dot(contact.along.lever_b, chassis().inverse_inertia_now * frames_[k].axle));
+      const Real both = coupling(contact, k);
       const Real slipping = -slip(contact);
       const Real turning_by = axle.target - (axle.spin - dot(frames_[k].axle, chassis().spin));
       const Real determinant = of_tyre * of_axle - both * both;
@@ -400,17 +439,28 @@ class VehicleStep {
     }
     push_along(contact, -slip(contact) * contact.along.mass);
   }
-  /// From impulses of the sweep before: against the way in which the tyre slides, with all its friction. The wheel
+  /// From the impulses of the sweep before: against the way in which the tyre slides, with all its friction. The wheel
   /// turns as that allows.
   void slide(Contact& contact, std::size_t k, const Real& along, const Real& aside, const Real& most) {
     push_along(contact, along - contact.along.impulse), push(contact, contact.aside, aside - contact.aside.impulse);
     turn(k);
-    const Real mass = Dim == 2 ? contact.along.mass : std::min(contact.along.mass, contact.aside.mass);
-    Real x = along - slip(contact) * mass, y = aside - velocity(contact, contact.aside) * mass;
-    const Real size = std::hypot(x, y), part = size > most ? most / size : Real(1);
-    x *= part, y *= part;
+    const std::array give = {give_along(contact, k), Dim == 2 ? Real(1) : 1 / contact.aside.mass};
+    const auto [x, y] =
+        within<Real>({along - slip(contact) / give[0], aside - velocity(contact, contact.aside) / give[1]}, give, most);
     push_along(contact, x - along), push(contact, contact.aside, y - aside);
     turn(k);
+  }
+  /// How much an impulse along changes the slip, where a wheel that its motor or brake holds stays held.
+  [[nodiscard]] Real give_along(const Contact& contact, std::size_t k) const {
+    const Axle& axle = axles_[k];
+    const bool is_held = axle.low < axle.impulse && axle.impulse < axle.high;
+    const Real both = is_held ? coupling(contact, k) : Real(0);
+    return 1 / contact.along.mass - both * both / mobility_of_axle(k);
+  }
+  /// How much an impulse of the axle changes the slip.
+  [[nodiscard]] Real coupling(const Contact& contact, std::size_t k) const {
+    return -(vehicle_.wheels[k].radius / vehicle_.wheels[k].inertia +
+             dot(contact.along.lever_b, chassis().inverse_inertia_now * frames_[k].axle));
   }
 
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
@@ -425,6 +475,7 @@ class VehicleStep {
   std::vector<WheelFrame<Real, Dim>> frames_;
   std::vector<Contact> contacts_;
   std::vector<Axle> axles_;
+  Real residual_{};
 };
 
 template <class Real>

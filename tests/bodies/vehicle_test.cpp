@@ -83,6 +83,7 @@ void expect_rest() {
   Driven<Dim> of(level<Dim>(), upright_vector<Dim>(0, 0.9), {1.5, -1.0});
   of.drive_for(10, {});
   EXPECT_NEAR(length(of.velocity()), 0, 1e-9);
+  EXPECT_LT(of.car.residual, 1e-15);
   const double each = Dim == 2 ? 1 : 0.5;
   for (std::size_t k = 0; k < of.car.wheels.size(); ++k) {
     const double share = of.car.wheels[k].hub[0] > 0 ? 1.0 / 2.5 : 1.5 / 2.5;
@@ -286,6 +287,7 @@ void expect_no_energy_from_nowhere(unsigned seed) {
   of.drive_for(4, controls, 1.0 / 240, [&] {
     const double now = energy(of);
     ASSERT_TRUE(std::isfinite(now));
+    ASSERT_LT(of.car.residual, 1e-2);  // and mostly below 1e-9
     // The force of a step belongs to its end, but moves the car from its beginning: energy swings by a part of what a
     // spring takes and gives, which is as small as the step; it must not grow.
     ASSERT_LT(now, least + 0.01 * mass * gravity) << "seed " << seed;
@@ -396,6 +398,22 @@ TEST(Vehicle, GoesUpAKerb) {
   of.drive_for(6, {.throttle = 1}, h, [&] { highest = std::max(highest, of.world.position[1][2]); });
   EXPECT_GT(of.world.position[1][0], 8);
   EXPECT_LT(highest, 0.73 + 0.12 + 0.15);
+}
+
+/// What only senses does not bear it: the same motion as without.
+TEST(Vehicle, DrivesThroughSensors) {
+  Driven<3> alone(level<3>(), {{0, 0, 0.73}}), other(level<3>(), {{0, 0, 0.73}});
+  for (const double height : {0.1, 0.3})
+    ASSERT_TRUE(other.world.add({.shape = Box<double, 3>{{{4, 8, 0.1}}},
+                                 .position = {{2, 0, height}},
+                                 .fixed = true,
+                                 .traits = {.is_sensor = true}}));
+  for (Driven<3>* of : {&alone, &other}) {
+    for (auto& wheel : of->car.wheels) wheel.greatest_drive = 300;
+    of->drive_for(3, {.throttle = 1});
+  }
+  EXPECT_GT(alone.position()[0], 4);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(other.position()[k], alone.position()[k], 1e-9);
 }
 
 TEST(Vehicle, GoesOnToTheSameBits) {
