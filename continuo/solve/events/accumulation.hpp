@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <vector>
+
+#include <continuo/solve/events/per_event.hpp>
 
 namespace continuo {
 
 /// Tracks the times of each event separately: different events at one instant are no accumulation.
-template <class Real>
+template <class Real, std::size_t events = detail::any_count>
 class AccumulationWatch {
  public:
   explicit AccumulationWatch(std::size_t size = 0) : tracks_(size) {}
@@ -56,7 +57,7 @@ class AccumulationWatch {
     int count = 0, shrinking = 0, at_instant = 0;
   };
 
-  std::vector<Track> tracks_;
+  detail::PerEvent<Track, events> tracks_;
 };
 
 }  // namespace continuo

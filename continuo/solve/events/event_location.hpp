@@ -25,6 +25,7 @@
 #include <continuo/numerics/root_bracketing.hpp>
 #include <continuo/numerics/root_isolation.hpp>
 #include <continuo/solve/direction.hpp>
+#include <continuo/solve/events/per_event.hpp>
 
 namespace continuo {
 
@@ -89,8 +90,11 @@ struct EnclosedStep {
 /// that a ball at t = 1000 is located on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)`
 /// gives all guards at a place of the present segment, and `evaluate(array, span)` those at several places, one place
 /// after the other.
-template <class Real>
+template <class Real, std::size_t count = detail::any_count>
 class EventLocator {
+  template <class T, std::size_t each = 1>
+  using PerGuard = detail::PerEvent<T, count, each>;
+
  public:
   /// The samples of a segment behind its beginning.
   static constexpr std::size_t later_samples = bernstein::count - 1;
@@ -105,8 +109,8 @@ class EventLocator {
     crossing_.guards.reserve(size);
   }
 
-  [[nodiscard]] std::vector<GuardState<Real>>& states() { return states_; }
-  [[nodiscard]] const std::vector<GuardState<Real>>& states() const { return states_; }
+  [[nodiscard]] PerGuard<GuardState<Real>>& states() { return states_; }
+  [[nodiscard]] const PerGuard<GuardState<Real>>& states() const { return states_; }
   /// The crossing that was found last.
   [[nodiscard]] Crossing<Real>& crossing() { return crossing_; }
   /// The side on which a guard of the last crossing arrived.
@@ -386,10 +390,10 @@ class EventLocator {
     return &crossing_;
   }
 
-  std::vector<GuardState<Real>> states_, scanned_;
-  std::vector<MovesOn> moves_on_;
-  std::vector<Real> first_, scratch_;
-  std::vector<Real> samples_;  // those of all guards at one place side by side
+  PerGuard<GuardState<Real>> states_, scanned_;
+  PerGuard<MovesOn> moves_on_;
+  PerGuard<Real> first_, scratch_;
+  PerGuard<Real, bernstein::count> samples_;  // those of all guards at one place side by side
   bool resampled_ = false;
   Crossing<Real> crossing_{};
 };

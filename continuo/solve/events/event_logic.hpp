@@ -15,6 +15,7 @@
 #include <continuo/solve/events/event_location.hpp>
 #include <continuo/solve/events/event_members.hpp>
 #include <continuo/solve/events/guard_motion.hpp>
+#include <continuo/solve/events/per_event.hpp>
 #include <continuo/solve/steps/consistent.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
@@ -22,6 +23,10 @@ namespace continuo {
 
 template <class System, State X, class Events>
 class EventLogic {
+  static constexpr std::size_t count = detail::count_of_events<Events>;
+  template <class T>
+  using PerGuard = detail::PerEvent<T, count>;
+
  public:
   using Real = Scalar<X>;
   using StepsOf = Steps<System, X>;
@@ -71,7 +76,7 @@ class EventLogic {
   [[nodiscard]] bool any_guard() const { return any_guard_; }
   /// Whether there is a guard whose event can change the motion.
   [[nodiscard]] bool any_turning_guard() const { return any_turning_guard_; }
-  [[nodiscard]] AccumulationWatch<Real>& accumulation() { return accumulation_; }
+  [[nodiscard]] AccumulationWatch<Real, count>& accumulation() { return accumulation_; }
 
   [[nodiscard]] bool can_restart(std::size_t i) const {
     if constexpr (detail::HasCanRestart<Events>) {
@@ -135,7 +140,7 @@ class EventLogic {
   [[nodiscard]] bool may_pass_quietly(StepsOf& steps) const {
     if constexpr (detail::HasWatchedBySystem<Events, System>) {
       if (!events_.watched_by(steps.system())) return false;
-      const std::vector<GuardState<Real>>& states = watch_.states();
+      const PerGuard<GuardState<Real>>& states = watch_.states();
       for (std::size_t i = 0; i < events_.size(); ++i)
         if (watched(i) && states[i].active &&
             (states[i].at_zero || states[i].side == 0 || sign_of(g_[i]) != states[i].side))
@@ -350,7 +355,7 @@ class EventLogic {
     return next;
   }
 
-  void evaluate(StepsOf& steps, Real t, const X& x, std::vector<Real>& values) {
+  void evaluate(StepsOf& steps, Real t, const X& x, PerGuard<Real>& values) {
     events_.guards(steps.system(), t, x, std::span<Real>(values));
   }
 
@@ -387,7 +392,7 @@ class EventLogic {
     return change;
   }
   void changes_by_tolerance(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance, Real times,
-                            std::vector<Real>& changes) {
+                            PerGuard<Real>& changes) {
     using std::abs, std::max;
     std::ranges::fill(changes, Real(0));
     for (int pattern = 0; pattern < 2; ++pattern) {
@@ -400,7 +405,7 @@ class EventLogic {
         if (watched(i)) changes[i] = max(changes[i], abs(scratch_[i] - g_[i]));
     }
   }
-  void largest_changes(StepsOf& steps, Real t, const X& x, Real units, std::vector<Real>& changes) {
+  void largest_changes(StepsOf& steps, Real t, const X& x, Real units, PerGuard<Real>& changes) {
     using std::abs, std::max;
     std::ranges::fill(changes, Real(0));
     const auto look = [&](Real moved_t, const X& moved) {
@@ -662,14 +667,14 @@ class EventLogic {
   }
 
   Events events_;
-  EventLocator<Real> watch_;
-  AccumulationWatch<Real> accumulation_;
-  std::vector<Real> g_, rounding_, wide_, scratch_;
-  std::vector<Real> slack_;        // of the last instant that a step was taken to
-  std::vector<char> marks_;        // of the present round
-  std::vector<char> jumps_;        // of the guards of the last crossing: g jumps across zero
-  std::vector<char> held_;         // the event fires because the motion would leave zero at once by its far side
-  std::vector<char> turned_back_;  // of the present round: the guard was turned back by its own event
+  EventLocator<Real, count> watch_;
+  AccumulationWatch<Real, count> accumulation_;
+  PerGuard<Real> g_, rounding_, wide_, scratch_;
+  PerGuard<Real> slack_;        // of the last instant that a step was taken to
+  PerGuard<char> marks_;        // of the present round
+  PerGuard<char> jumps_;        // of the guards of the last crossing: g jumps across zero
+  PerGuard<char> held_;         // the event fires because the motion would leave zero at once by its far side
+  PerGuard<char> turned_back_;  // of the present round: the guard was turned back by its own event
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_, scheduled_at_;
   Real forward_, longest_, size_{};
