@@ -76,7 +76,7 @@ class RunOfLane {
   /// Begins a run: its first events happen. False where it has ended at once.
   [[nodiscard]] bool begin(std::size_t run, RunStart<X, P>&& start) {
     result_.run = run;
-    result_.outcome = {};
+    clear(result_.outcome);
     result_.events.clear();
     result_.rows.clear();
     t_ = settings_.interval.from;
@@ -172,7 +172,7 @@ class RunOfLane {
     outcome.ending = ending;
     outcome.t = t_;
     outcome.h = ending == Ending::reached_end ? 0.0 : steps_.size();
-    outcome.hint = std::move(hint);
+    if (!hint.empty()) outcome.hint = std::move(hint);
     ended_ = true;
     return false;
   }
@@ -191,6 +191,14 @@ class RunOfLane {
   [[nodiscard]] std::size_t events() const { return events_; }
 
  private:
+  // An assignment of an empty one would move its strings.
+  static void clear(Outcome<double>& outcome) {
+    outcome.error = outcome.limit_time = 0;
+    outcome.component.clear();
+    outcome.event.clear();
+    outcome.hint.clear();
+  }
+
   using Logic = EventLogic<System, X, Source>;
   static constexpr std::size_t places = EventLocator<double>::later_samples;
 
