@@ -22,6 +22,7 @@
 #include <continuo/numerics/bernstein.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/numerics/lanes.hpp>
+#include <continuo/solve/steps/first_step.hpp>
 #include <continuo/system/rebound_state.hpp>
 
 namespace continuo::detail {
@@ -88,6 +89,7 @@ class LaneDriver {
 
   /// One step of every run.
   void take_step() {
+    if (!size_first_steps()) return;
     if (one_by_one_ > 0) --one_by_one_;
     sizes_.choose();
     refresh();
@@ -181,7 +183,7 @@ class LaneDriver {
   using MotionOfSystem = MotionBySystem<F, LaneSizes<W>, WideX, WideP>;
   /// Whether it does now: nobody looks at the steps.
   [[nodiscard]] bool can_take_many_steps() {
-    return is_active() && !sizes_.fixed() && !has_rows_ && f_.template can_take_steps<M>();
+    return size_first_steps() && !sizes_.fixed() && !has_rows_ && f_.template can_take_steps<M>();
   }
   [[nodiscard]] MotionOfSystem begin_many_steps() {
     refresh();
@@ -243,21 +245,54 @@ class LaneDriver {
     if constexpr (PartOfPair<M>) pairs_[lane].begin(one.x());
     begin_motion(lane);
   }
-  // The motion of a lane begins, or begins anew after an event, where its run is.
+  // The motion of a lane begins, or begins anew after an event, where its run is. Its first step gets a size before it
+  // is taken, together with those of others.
   void begin_motion(std::size_t lane) {
     Run& one = runs_[lane];
-    const double limit = one.limit();
-    double size = 0;
-    if (!sizes_.fixed()) {
-      size = one.steps().first_size(limit, settings_.options, one.result().outcome);
-      if (size == 0) return finish(lane);
-    }
     if constexpr (PartOfPair<M>) pairs_[lane].begin_anew();
     if constexpr (is_rosenbrock) rosenbrock_->begin_motion(lane);
     put(one.x(), lane, x_);
     put(one.p(), lane, system_.p);
-    sizes_.begin_motion(lane, one.t(), size, limit);
+    sizes_.begin_motion(lane, one.t(), one.limit());
     fresh_.set(lane, 0.0);
+    if (!sizes_.fixed()) beginning_.set(lane, 1.0), any_begins_ = true;
+  }
+  // Sizes of the first steps of all motions that have begun. False where no run is left on its way.
+  [[nodiscard]] bool size_first_steps() {
+    if (!any_begins_) return active_ > 0;
+    const Wide size = can_begin_together ? first_sizes() : Wide(0.0);
+    for (std::size_t lane = 0; lane < W; ++lane) {
+      if (beginning_[lane] == 0 || !sizes_.is_active(lane)) continue;
+      double one = size[lane];
+      if (one == 0)
+        one = runs_[lane].steps().first_size(runs_[lane].limit(), settings_.options, runs_[lane].result().outcome);
+      sizes_.set_first_size(lane, one);
+      if (one == 0) finish(lane);
+    }
+    beginning_ = Wide(0.0);
+    any_begins_ = false;
+    return active_ > 0;
+  }
+  // As Steps::estimate_first finds them, operation by operation; 0 where f is not finite. That of one motion waits at
+  // each operation for the one before, so that those of many take hardly longer.
+  [[gnu::noinline]] Wide first_sizes() {
+    const Options<X>& options = settings_.options;
+    const Wide longest = min(abs(sizes_.limit() - sizes_.t()), Wide(options.max_step));
+    const Wide forward(settings_.forward());
+    if (options.first_step > 0) return forward * min(Wide(options.first_step), longest);
+    WideX f0 = x_, x1 = x_, f1 = x_;
+    evaluate(system_, sizes_.t(), x_, f0);
+    const auto power = [](const Wide& base, const Wide& exponent) {
+      Wide result;
+      for (std::size_t lane = 0; lane < W; ++lane) result.set(lane, std::pow(base[lane], exponent[lane]));
+      return result;
+    };
+    const auto choose = [](const auto& condition, const Wide& yes, const Wide& no) {
+      return select(condition, yes, no);
+    };
+    const Wide size = first_step(system_, sizes_.t(), x_, f0, starting_order<M>(), forward, longest, tolerance_.all(),
+                                 x1, f1, power, choose);
+    return select(zero_if_all_finite(f0) == Wide(0.0), forward * size, Wide(0.0));
   }
   void finish(std::size_t lane) {
     sizes_.end_run(lane);
@@ -599,6 +634,7 @@ class LaneDriver {
     return near;
   }
 
+  static constexpr bool can_begin_together = !has_own_runs && !is_rosenbrock;
   static constexpr bool keeps_slope = M::tableau.first_same_as_last();
   static constexpr std::size_t last_stage = M::tableau.stages - 1;  // where it is f at the end
   static constexpr std::size_t steps_between_looks = 64, most_free_steps = 256, most_steps_of_system = 64;
@@ -627,6 +663,8 @@ class LaneDriver {
   bool exhausted_ = false;              // no run is left to begin
   std::size_t active_ = 0, since_look_ = 0;
   std::size_t one_by_one_ = 0;          // so many of the next steps are not free: a run escapes in one of them
+  Wide beginning_{0.0};                 // 1 where a motion begins, whose first step has no size yet
+  bool any_begins_ = false;             // in one of the lanes
   std::optional<std::size_t> pending_;  // a run that waits for room
 };
 

@@ -73,18 +73,19 @@ class LaneSizes {
     reach_[lane] = 0;
   }
   void end_run(std::size_t lane) { active_.set(lane, 0.0); }
-  /// The motion begins at t, or begins anew there; `size` is that of the first step.
-  void begin_motion(std::size_t lane, double t, double size, double limit) {
+  /// The motion begins at t, or begins anew there.
+  void begin_motion(std::size_t lane, double t, double limit) {
     t_.set(lane, t);
     grid_.set(lane, t);
     grid_steps_.set(lane, 0.0);
-    next_.set(lane, size);
+    next_.set(lane, 0.0);
     carried_.set(lane, 0.0);
     set_limit(lane, limit);
     errors_.last.set(lane, 0.0F);
     errors_.before_last.set(lane, 0.0F);
     rejects_.set(lane, 0.0F);
   }
+  void set_first_size(std::size_t lane, double size) { next_.set(lane, size); }
   void set_limit(std::size_t lane, double limit) {
     limit_.set(lane, limit);
     if (!depends_on_time_) return;
@@ -99,6 +100,7 @@ class LaneSizes {
   /// Where it begins, its size, and where it ends once it has been judged.
   [[nodiscard]] const Wide& t() const { return t_; }
   [[nodiscard]] const Wide& h() const { return h_; }
+  [[nodiscard]] const Wide& limit() const { return limit_; }
   [[nodiscard]] const Wide& end() const { return end_; }
   /// The lanes whose step was accepted, and of those the ones that have come to their limit.
   [[nodiscard]] const Mask& accepted() const { return accepted_; }
