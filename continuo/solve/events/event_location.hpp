@@ -292,12 +292,35 @@ class EventLocator {
     if (nearest > error) return false;
     if (!(error <= 1e-6 * largest) && depth < 4) return search_halves(scan, from, to, evaluate, depth);
     const auto visit = [&](double left, double right) {
+      if (const std::size_t k = crossing_sample(value, scan.state.side, left, right); k != 0)
+        return cross_between_samples(scan, value, k, from, to, evaluate);
       return cross(scan, time(from, to, left), time(from, to, right), evaluate);
     };
     const bool smooth = error <= 0.1 * largest;
     if (smooth ? bernstein::isolate_sign_changes(b, visit) : between_samples(value, visit)) return true;
     // The last check: whatever the polynomial shows, a guard that ends on the other side has crossed.
     return cross(scan, from, to, evaluate);
+  }
+
+  // Of the samples in a part in which the polynomial changes its sign once, the first one on the far side; 0 where no
+  // two of them enclose the change, or where the guard is zero at the first of them.
+  [[nodiscard]] static std::size_t crossing_sample(const std::array<double, bernstein::count>& value, int side,
+                                                   double left, double right) {
+    constexpr double zero = std::numeric_limits<double>::min();
+    for (std::size_t k = 1; k < bernstein::count && bernstein::nodes[k] <= right; ++k)
+      if (bernstein::nodes[k - 1] >= left && value[k - 1] * side > zero && value[k] * side < 0) return k;
+    return 0;
+  }
+
+  // Between the samples k - 1 and k, whose values are known, the guard changes its side.
+  template <class Evaluate>
+  [[nodiscard]] bool cross_between_samples(Scan& scan, const std::array<double, bernstein::count>& value, std::size_t k,
+                                           Real from, Real to, Evaluate& evaluate) {
+    const int side = -scan.state.side;
+    const auto sample = [&](std::size_t i) {
+      return bracketing::Point<Real>{time(from, to, bernstein::nodes[i]), Real(side) * Real(value[i])};
+    };
+    return arrive_between(scan, side, sample(k - 1), sample(k), evaluate);
   }
 
   template <class Evaluate>
@@ -356,18 +379,26 @@ class EventLocator {
   [[nodiscard]] bool arrive_beyond(Scan& scan, int side, Real near, Real far, Real g_far, Evaluate& evaluate) {
     using std::min;
     const Real level = scan.state.level();
+    const Real at_far = Real(side) * (g_far - level);
+    Real at_near(0);
+    if (at_far > 0 && watches(scan.direction, side)) {
+      const bool is_known = near == scan.from && !std::isnan(static_cast<double>(scan.at_from));
+      const Real g_near = is_known ? scan.at_from : guard_at(scan.guard, near, evaluate);
+      at_near = min(Real(0), Real(Real(side) * (g_near - level)));
+    }
+    return arrive_between(scan, side, {near, at_near}, {far, at_far}, evaluate);
+  }
+
+  // The values are those of the guard, with its sign turned so that it rises from its level.
+  template <class Evaluate>
+  [[nodiscard]] bool arrive_between(Scan& scan, int side, const bracketing::Point<Real>& near,
+                                    const bracketing::Point<Real>& far, Evaluate& evaluate) {
+    const Real level = scan.state.level();
     const GuardState<Real> before = scan.state;
     scan.arrive_at(side);
     if (!watches(scan.direction, side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
-    const Real at_far = Real(side) * (g_far - level);
-    if (at_far > 0) {
-      const bool is_known = near == scan.from && !std::isnan(static_cast<double>(scan.at_from));
-      const Real at_near = is_known ? Real(side) * (scan.at_from - level) : beyond(near);
-      scan.crossing = enclose_root(beyond, near, far, min(Real(0), at_near), at_far).far;
-    } else {
-      scan.crossing = far;
-    }
+    scan.crossing = far.value > 0 ? enclose_root(beyond, near.t, far.t, near.value, far.value).far : far.t;
     // A guard that began at zero has left its band if it is beyond it half way.
     const Real half_way = scan.from + (scan.crossing - scan.from) / 2;
     const bool stayed = before.at_zero && !(Real(before.side) * guard_at(scan.guard, half_way, evaluate) > before.band);
