@@ -1,12 +1,19 @@
 // continuo/numerics/sparse_pattern.cpp
 // Patterns of sparse matrices: search, bandwidth, and columns grouped for differences.
 #include <algorithm>
+#include <mutex>
+#include <utility>
 
 #include <continuo/numerics/sparse_pattern.hpp>
 
 namespace continuo {
 
-SparsePattern::SparsePattern(std::size_t size, std::span<const MatrixPlace> places) {
+struct SparsePattern::Kept {
+  std::mutex mutex;
+  std::shared_ptr<const PatternAnalysis> analysis;
+};
+
+SparsePattern::SparsePattern(std::size_t size, std::span<const MatrixPlace> places) : kept_(std::make_shared<Kept>()) {
   std::vector<std::vector<std::int32_t>> columns(size);
   for (const MatrixPlace& place : places) columns[place.column].push_back(static_cast<std::int32_t>(place.row));
   starts_.push_back(0);
@@ -18,6 +25,18 @@ SparsePattern::SparsePattern(std::size_t size, std::span<const MatrixPlace> plac
     rows_.insert(rows_.end(), rows.begin(), rows.end());
     starts_.push_back(static_cast<std::int32_t>(rows_.size()));
   }
+}
+
+std::shared_ptr<const PatternAnalysis> SparsePattern::analysis() const {
+  if (!kept_) return nullptr;
+  const std::lock_guard<std::mutex> lock(kept_->mutex);
+  return kept_->analysis;
+}
+
+void SparsePattern::keep(std::shared_ptr<const PatternAnalysis> analysis) const {
+  if (!kept_) return;
+  const std::lock_guard<std::mutex> lock(kept_->mutex);
+  kept_->analysis = std::move(analysis);
 }
 
 std::size_t SparsePattern::find(std::size_t row, std::size_t column) const {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,13 @@ namespace continuo {
 struct MatrixPlace {
   std::uint32_t row;     // from 0
   std::uint32_t column;  // from 0
+};
+
+/// What a sparse solver has found out about a pattern.
+class PatternAnalysis {
+ public:
+  /// Frees it.
+  virtual ~PatternAnalysis() = default;
 };
 
 /// Columns one after another, the rows of each ascending; every diagonal entry is there.
@@ -56,9 +64,16 @@ class SparsePattern {
   [[nodiscard]] std::span<const std::int32_t> starts() const { return starts_; }
   /// The row of each entry.
   [[nodiscard]] std::span<const std::int32_t> rows() const { return rows_; }
+  /// What is kept for whoever has matrices of the pattern next: all copies of it share this. Null before `keep`. Both
+  /// may be called by several threads.
+  [[nodiscard]] std::shared_ptr<const PatternAnalysis> analysis() const;
+  /// Keeps an analysis in place of the last one.
+  void keep(std::shared_ptr<const PatternAnalysis> analysis) const;
 
  private:
+  struct Kept;
   std::vector<std::int32_t> starts_, rows_;
+  std::shared_ptr<Kept> kept_;  // null where there are no columns
 };
 
 /// Groups of columns of which no two have an entry in the same row: one evaluation of f gives the differences of a

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -121,8 +123,11 @@ TYPED_TEST(SparseEliminationOf, IsRefusedWhereAPivotIsZeroOrNoNumber) {
   using Number = TypeParam;
   const SparsePattern pattern(2, std::vector<MatrixPlace>{{0, 1}, {1, 0}});
   const std::vector<std::int32_t> order{0, 1}, blocks{0, 2};
+  const auto plan = std::make_shared<const detail::EliminationPlan>(pattern.starts(), pattern.rows(),
+                                                                    detail::PivotOrder{order, order, blocks});
+  ASSERT_TRUE(plan->is_listed());
   detail::SparseElimination<Number> elimination;
-  ASSERT_TRUE(elimination.plan(pattern.starts(), pattern.rows(), {order, order, blocks}));
+  elimination.follow(plan);
   const auto factor = [&](double a, double b, double c, double d) {  // columns (a, b) and (c, d)
     const std::vector<Number> values{a, b, c, d};
     elimination.scale_by(values.data());
@@ -139,8 +144,7 @@ TYPED_TEST(SparseEliminationOf, IsRefusedWhereAPivotIsZeroOrNoNumber) {
 TEST(SparseElimination, IsNotPlannedBelowItsBlocksOrWhereItIsLong) {
   const SparsePattern pattern(2, std::vector<MatrixPlace>{{0, 1}, {1, 0}});
   const std::vector<std::int32_t> order{0, 1}, two_blocks{0, 1, 2};
-  detail::SparseElimination<double> elimination;
-  EXPECT_FALSE(elimination.plan(pattern.starts(), pattern.rows(), {order, order, two_blocks}));
+  EXPECT_FALSE(detail::EliminationPlan(pattern.starts(), pattern.rows(), {order, order, two_blocks}).is_listed());
   std::vector<MatrixPlace> all;
   std::vector<std::int32_t> long_order;
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -149,7 +153,42 @@ TEST(SparseElimination, IsNotPlannedBelowItsBlocksOrWhereItIsLong) {
   }
   const SparsePattern full(100, all);
   const std::vector<std::int32_t> one_block{0, 100};
-  EXPECT_FALSE(elimination.plan(full.starts(), full.rows(), {long_order, long_order, one_block}));
+  EXPECT_FALSE(detail::EliminationPlan(full.starts(), full.rows(), {long_order, long_order, one_block}).is_listed());
+}
+
+// What one factorization has found out about a pattern serves the next one, with other pivots in between as well, and
+// several threads at once: the solutions are those of a pattern of which nothing is known, to the bit.
+TEST(SparseElimination, SharesWhatIsKnownOfAPattern) {
+  std::mt19937 engine(5);
+  const SparsePattern shared = random_pattern(40, engine);
+  std::vector<std::vector<double>> matrices(12, std::vector<double>(shared.entries()));
+  for (auto& matrix : matrices)
+    for (double& value : matrix) value = std::ldexp(random_number<double>(engine), static_cast<int>(engine() % 20));
+  const auto solution = [](const SparsePattern& pattern, const std::vector<double>& matrix) {
+    SparseLU<double> lu(pattern);
+    std::ranges::copy(matrix, lu.values().begin());
+    std::vector<double> x(pattern.size(), 1.0);
+    if (!lu.factor()) return std::vector<double>{};
+    lu.solve(x.data());
+    return x;
+  };
+  std::vector<std::vector<double>> alone, together(matrices.size());
+  for (const auto& matrix : matrices) {
+    std::vector<MatrixPlace> places;
+    for (std::size_t j = 0; j < shared.size(); ++j)
+      for (std::size_t p = shared.begin(j); p < shared.end(j); ++p)
+        places.push_back({static_cast<std::uint32_t>(shared.row(p)), static_cast<std::uint32_t>(j)});
+    alone.push_back(solution(SparsePattern(shared.size(), places), matrix));
+  }
+  std::vector<std::thread> threads;
+  for (std::size_t part = 0; part < 3; ++part)
+    threads.emplace_back([&, part] {
+      for (std::size_t round = 0; round < 20; ++round)
+        for (std::size_t i = part; i < matrices.size(); i += 3) together[i] = solution(shared, matrices[i]);
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(together, alone);
+  EXPECT_TRUE(std::ranges::any_of(alone, [](const auto& x) { return !x.empty(); }));
 }
 
 }  // namespace
