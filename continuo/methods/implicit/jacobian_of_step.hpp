@@ -30,18 +30,21 @@ template <class System, State X>
   bool any_moves = false;
   for (std::size_t i = 0; i < dimension(x); ++i) any_moves = any_moves || moves(i);
   if (!any_moves) return 0;  // as nearly always; nothing has been allocated so far
-  X move = x, further = x;
-  for (std::size_t i = 0; i < dimension(x); ++i) {
+  auto [move, promised] = linear.scratch();
+  for (std::size_t i = 0; i < dimension(x); ++i)
     move.data()[i] = !moves(i) ? Real(0) : fx.data()[i] > Real(0) ? Real(scale(i)) : Real(-scale(i));
-    further.data()[i] = x.data()[i] + move.data()[i];
-  }
-  X f_further = fx, promised = fx;
+  linear.multiply_jacobian(move, promised);
+  const auto counts = [&](std::size_t i) { return !(abs(h * promised.data()[i]) <= scale(i)); };
+  bool any_counts = false;
+  for (std::size_t i = 0; i < dimension(x); ++i) any_counts = any_counts || counts(i);
+  if (!any_counts) return 0;
+  X further = x, f_further = fx;
+  for (std::size_t i = 0; i < dimension(x); ++i) further.data()[i] += move.data()[i];
   evaluate(system, t, further, f_further);
   if (!is_finite_state(f_further)) return 1;
-  linear.multiply_jacobian(move, promised);
   for (std::size_t i = 0; i < dimension(x); ++i) {
     const Real promise = abs(promised.data()[i]), change = abs(f_further.data()[i] - fx.data()[i]);
-    if (promise <= Real(too_much) * change || abs(h) * promise <= scale(i)) continue;
+    if (promise <= Real(too_much) * change || !counts(i)) continue;
     return 1 + linear.evaluate(system, t, further, f_further, LeastIncrements(tolerance, h, further, f_further, false));
   }
   return 1;

@@ -138,6 +138,12 @@ class Linearization {
     return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
   }
 
+  /// Two states for whoever needs some between two evaluations.
+  struct Scratch {
+    X &first, &second;
+  };
+  [[nodiscard]] Scratch scratch() { return {moved_, slope_}; }
+
   /// Why c M - J could not be decomposed.
   [[nodiscard]] StepStatus status_of_failure() const {
     return detail::is_finite_state(rows_) ? StepStatus::singular_matrix : StepStatus::not_finite;
