@@ -696,12 +696,6 @@ TEST(ExactRigid, RefusesWhatItDoesNotKnow) {
   refuses([](World3& world, BodyHandle,
              Options&) { require(world.add({.shape = Box<double, 3>{}, .position = {{0.9, 0, 0}}})); },
           "overlap by 0.1");
-  refuses(
-      [](World3& world, BodyHandle, Options&) {
-        world.gravity = {{0, 0, -10}};
-        require(world.add_wall({.offset = -2}));
-      },
-      "no friction between shapes in space");
 }
 
 }  // namespace

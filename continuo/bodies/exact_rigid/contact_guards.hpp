@@ -13,6 +13,7 @@
 
 #include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 #include <continuo/bodies/exact_rigid/rigid_flight.hpp>
+#include <continuo/bodies/exact_rigid/rubbing_in_space.hpp>
 #include <continuo/bodies/exact_rigid/separation.hpp>
 #include <continuo/numerics/root_bracketing.hpp>
 
@@ -105,6 +106,7 @@ class ContactGuards {
   }
   /// What still slips slowly the other way where it begins to slip is on its way to 0: no change of the contact.
   void allow_slow_slips(const System& system) {
+    if (Dim == 3) return;
     std::size_t guard = system.contacts().size();
     for (const auto& one : system.contacts()) {
       if (!one.is_first || one.rubbing == Rubbing::none) continue;
@@ -173,7 +175,11 @@ class ContactGuards {
     std::vector<Real> all;
     const auto contacts = system.contacts();
     for (std::size_t k = 0; k < contacts.size(); ++k) all.push_back(system.press(k) / force_);
-    if constexpr (Dim == 2) add_rubbing(system, all);
+    if constexpr (Dim == 2) {
+      add_rubbing(system, all);
+    } else {
+      add_rubbing_in_space(system, force_, speed_, all);
+    }
     first_corner_ = all.size();
     for (const Corner& corner : corners_) all.push_back(gap_of(system, corner));
     for (const WatchedPair<Real, Dim>& pair : pairs_) {

@@ -1,6 +1,7 @@
 // An instant at which bodies touch: the impulses of what approaches, and then which contacts last.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,11 +9,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <continuo/bodies/event_driven/exact_engine.hpp>
 #include <continuo/bodies/exact_rigid/complementarity.hpp>
+#include <continuo/bodies/exact_rigid/friction_cones.hpp>
 #include <continuo/bodies/exact_rigid/friction_modes.hpp>
 #include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 
@@ -97,6 +100,8 @@ class ContactInstant {
   struct LastingPoint {
     std::size_t point = 0;
     Rubbing rubbing = Rubbing::none;
+    V slip{};             // in space: as in ActingContact
+    Real steady_below{};  // likewise
   };
   [[nodiscard]] std::span<const LastingPoint> lasting() const { return lasting_; }
   /// Points that neither part nor approach.
@@ -202,18 +207,13 @@ class ContactInstant {
     ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
     const std::vector<Real> answers = reduced.answers(joint_rates(joints), impulses);
     apply(rows, impulses), apply(joints, answers);
-    for (std::size_t k = 0; k < approaching.size(); ++k) struck(approaching[k], impulses[k]);
+    for (std::size_t k = 0; k < approaching.size(); ++k) struck(approaching[k], impulses[rubs ? normal_place(k) : k]);
     return {};
   }
   [[nodiscard]] const ExactBody<Real, Dim>* body_data() const { return std::as_const(system_).bodies().data(); }
 
   // With friction.
 
-  [[nodiscard]] static Status no_friction_in_space() {
-    return cannot_continue(
-        "the exact motion knows no friction between shapes in space: give one of the two materials "
-        "a friction of 0, or use FastMotion");
-  }
   [[nodiscard]] static Status jammed() {
     return cannot_continue(
         "no forces of contacts with friction belong together: bodies jam (Painleve's paradox), or "
@@ -241,47 +241,68 @@ class ContactInstant {
                                              const std::vector<Row>& joints, const std::vector<Real>& before,
                                              const std::vector<Real>& rate_after, std::vector<Row>& rows,
                                              std::vector<Real>& impulses) {
-    if constexpr (Dim == 3) {
-      return no_friction_in_space();
-    } else {
-      std::vector<std::size_t> leaders;
-      FrictionProblem<Real> problem = problem_of(approaching, rows, leaders);
-      ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
-      problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
-      std::vector<Real> rates;
-      for (const Row& row : rows) rates.push_back(rate_of(row));
-      const std::vector<Real> free = reduced.rates(joint_rates(joints), rates);
-      const auto solve = [&](const Real& share) {
-        problem.rates = free;
-        for (std::size_t k = 0; k < before.size(); ++k) problem.rates[k] -= share * rate_after[k];
-        return FrictionModes<Real>(problem).solve();
-      };
-      const auto gain = [&](const std::vector<Real>& forces) {
-        Real sum(0);
-        for (std::size_t r = 0; r < rows.size(); ++r) {
-          Real after = free[r];
-          for (std::size_t c = 0; c < rows.size(); ++c) after += problem.matrix[c * rows.size() + r] * forces[c];
-          sum += forces[r] * (free[r] + after) / 2;
-        }
-        return sum;
-      };
-      auto found = solve(Real(1));
-      if (found && gain(found->forces) > Real(0)) {
-        Real low(0), high(1);
-        for (int round = 0; round < std::numeric_limits<Real>::digits; ++round) {
-          const auto trial = solve((low + high) / 2);
-          (trial && !(gain(trial->forces) > Real(0)) ? low : high) = (low + high) / 2;
-        }
-        found = solve(low);
+    std::vector<std::size_t> leaders;
+    auto problem = problem_of_impact(approaching, rows, leaders);
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+    std::vector<Real> rates;
+    for (const Row& row : rows) rates.push_back(rate_of(row));
+    const std::vector<Real> free = reduced.rates(joint_rates(joints), rates);
+    const auto solve = [&](const Real& share) {
+      problem.rates = free;
+      for (std::size_t k = 0; k < before.size(); ++k) problem.rates[normal_place(k)] -= share * rate_after[k];
+      return Forces(problem).solve();
+    };
+    const auto gain = [&](const std::vector<Real>& forces) {
+      Real sum(0);
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        Real after = free[r];
+        for (std::size_t c = 0; c < rows.size(); ++c) after += problem.matrix[c * rows.size() + r] * forces[c];
+        sum += forces[r] * (free[r] + after) / 2;
       }
-      if (!found) return jammed();
-      impulses = found->forces;
-      return {};
+      return sum;
+    };
+    auto found = solve(Real(1));
+    if (found && gain(found->forces) > Real(0)) {
+      Real low(0), high(1);
+      for (int round = 0; round < std::numeric_limits<Real>::digits; ++round) {
+        const auto trial = solve((low + high) / 2);
+        (trial && !(gain(trial->forces) > Real(0)) ? low : high) = (low + high) / 2;
+      }
+      found = solve(low);
+    }
+    if (!found) return jammed();
+    impulses = found->forces;
+    return {};
+  }
+  /// Of the plane: the points along the normal, then the pairs across it; of space: of each point its three rows.
+  /// @{
+  using Forces = std::conditional_t<Dim == 2, FrictionModes<Real>, FrictionCones<Real>>;
+  [[nodiscard]] static std::size_t normal_place(std::size_t k) { return Dim == 2 ? k : 3 * k; }
+  [[nodiscard]] auto problem_of_impact(std::span<const std::size_t> points, std::vector<Row>& rows,
+                                       std::vector<std::size_t>& leaders) const {
+    if constexpr (Dim == 2) {
+      return problem_of(points, rows, leaders);
+    } else {
+      ConeProblem<Real> problem;
+      rows.clear();
+      for (const std::size_t k : points) {
+        const Point& at = points_[k];
+        problem.contacts.push_back({.friction = at.material.friction});
+        rows.push_back(row_of(k));
+        for (const Moved& tangent : tangents(Moved{at.normal, {}})) {
+          Row row = row_along(body(at.a), body(at.b), tangent, Moved{at.place, {}});
+          row.a = at.a, row.b = at.b;
+          rows.push_back(row);
+        }
+      }
+      return problem;
     }
   }
+  /// @}
   [[nodiscard]] Status choose_with_friction() {
     if constexpr (Dim == 3) {
-      return no_friction_in_space();
+      return choose_in_space();
     } else {
       std::vector<Row> rows, plain;
       std::vector<std::size_t> leaders;
@@ -303,9 +324,54 @@ class ContactInstant {
       const auto found = FrictionModes<Real>(problem).solve();
       if (!found) return jammed();
       for (std::size_t k = 0; k < closed_.size(); ++k)
-        if (found->presses[k]) lasting_.push_back({closed_[k], found->rubbing[problem.pair_of_point[k]]});
+        if (found->presses[k]) lasting_.push_back({closed_[k], found->rubbing[problem.pair_of_point[k]], {}, {}});
       return {};
     }
+  }
+  /// What slips slower than `steady` of the speed up to which contacts are closed may stick; slower still, it does not
+  /// slip yet.
+  [[nodiscard]] Status choose_in_space() {
+    constexpr Real steady = Real(1e-2), unsure = Real(1e-4);
+    std::vector<Row> rows;
+    ConeProblem<Real> problem;
+    std::vector<std::array<V, 2>> across;
+    for (const std::size_t k : closed_) {
+      const Point& at = points_[k];
+      const ContactPlace<Real, Dim> place = place_of(*at.feature, body(at.a), body(at.b));
+      rows.push_back(normal_row(place, body(at.a), body(at.b)));
+      std::array<Real, 2> slip{};
+      for (std::size_t i = 0; i < 2; ++i) {
+        rows.push_back(tangent_rows(place, body(at.a), body(at.b))[i]);
+        slip[i] = rows.back().rate_of(body(at.a), body(at.b));
+      }
+      for (std::size_t i = rows.size() - 3; i < rows.size(); ++i) rows[i].a = at.a, rows[i].b = at.b;
+      across.push_back({rows[rows.size() - 2].direction, rows.back().direction});
+      ConeContact<Real> contact{.friction = at.material.friction};
+      const Real speed = std::hypot(slip[0], slip[1]), slow = slow_of(k);
+      contact.may_stick = speed <= slow * steady;
+      if (speed > slow * unsure) contact.slip = {slip[0] / speed, slip[1] / speed};
+      problem.contacts.push_back(contact);
+    }
+    const std::vector<Row> joints = system_.joint_rows();
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+    problem.rates = reduced.rates(accelerations(joints), accelerations(rows));
+    const bool moves = std::ranges::any_of(problem.rates, [](const Real& rate) { return rate != Real(0); });
+    if (!moves) return {};
+    const auto found = FrictionCones<Real>(problem).solve();
+    if (!found) return jammed();
+    for (std::size_t k = 0; k < closed_.size(); ++k) {
+      if (found->modes[k] == ConeMode::open) continue;
+      LastingPoint one{.point = closed_[k]};
+      if (problem.contacts[k].friction > Real(0))
+        one.rubbing = found->modes[k] == ConeMode::sticks ? Rubbing::sticks : Rubbing::forwards;
+      if (one.rubbing == Rubbing::forwards) {
+        one.slip = across[k][0] * found->slips[k][0] + across[k][1] * found->slips[k][1];
+        if (!problem.contacts[k].slip) one.steady_below = slow_of(closed_[k]) * steady;
+      }
+      lasting_.push_back(one);
+    }
+    return {};
   }
   [[nodiscard]] Status choose_without_friction() {
     std::vector<Row> rows;
@@ -319,7 +385,7 @@ class ContactInstant {
     const std::vector<Real> forces = complementary_forces<Real>(reduced.matrix(), q, least);
     if (forces.empty()) return cannot_continue("the forces of contacts cannot be found");
     for (std::size_t k = 0; k < closed_.size(); ++k)
-      if (forces[k] > Real(0)) lasting_.push_back({closed_[k], Rubbing::none});
+      if (forces[k] > Real(0)) lasting_.push_back({closed_[k], Rubbing::none, {}, {}});
     return {};
   }
   [[nodiscard]] Row lasting_row(std::size_t k, bool is_across) const {

@@ -738,7 +738,9 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
                                        .pair = at.pair,
                                        .rubbing = one.rubbing,
                                        .friction = at.material.friction,
-                                       .is_first = at.pair != last_pair};
+                                       .is_first = at.pair != last_pair,
+                                       .slip = one.slip,
+                                       .steady_below = one.steady_below};
       if (!is_here(contact.a) && !is_here(contact.b)) continue;
       last_pair = at.pair;
       system.add(contact, bodies_);

@@ -3,24 +3,28 @@
 // second derivatives; after every step the state is moved onto the constraints.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <continuo/bodies/constrained/constrained_system.hpp>
 #include <continuo/bodies/exact_rigid/contact_feature.hpp>
+#include <continuo/bodies/exact_rigid/contact_tangents.hpp>
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
 #include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/forces.hpp>
 
 namespace continuo {
 
-/// How a contact rubs: it does not slip, or b slips against a along the direction across the normal, or against it.
+/// How a contact rubs: it does not slip, or b slips against a along the direction across the normal, or against it. In
+/// space, where slip has any direction, it is always forwards.
 enum class Rubbing : std::uint8_t { none, sticks, forwards, backwards };
 
 /// A contact that lasts.
@@ -31,7 +35,11 @@ struct ActingContact {
   std::uint32_t pair = 0;      // of parts, by whatever number its owner gives
   Rubbing rubbing = Rubbing::none;
   Real friction{};
-  bool is_first = true;  // of its pair: it has the row that sticks
+  bool is_first = true;  // of its pair: in the plane it has the row that sticks
+  // In space, of a contact that slips:
+  Vector<Real, Dim>
+      slip{};           // the direction of the slip at the end of the last step, or against it once it has passed 0
+  Real steady_below{};  // up to this slip friction keeps its direction: below, that of a slip is not sure
 };
 
 /// The state: of each moving body position, velocity, orientation and angular momentum; then the impulse of each
@@ -105,6 +113,7 @@ class RigidSystem {
     project_velocities();
     const Real more(is_within_step ? 1000 : 1);
     for (std::size_t k = 0; k < moving_; ++k) keep_energy(k, more * greatest_turn_);
+    if (!is_within_step) note_slips();
     pack(state);
     return true;
   }
@@ -114,10 +123,12 @@ class RigidSystem {
     greatest_turn_ = 4 * tolerance;
     for (std::size_t k = 0; k < moving_; ++k) normalize(bodies_[k]);
     project_positions();
+    begins_ = true;
     project_velocities();
+    begins_ = false;
     kept_.clear();
     find_rows(false);
-    if (!rows_.empty()) {
+    if (!rows_.empty() && !rubs_in_space()) {
       factor(rows_);
       kept_.assign(system_.independent().begin(), system_.independent().end());
       std::ranges::sort(kept_);
@@ -188,8 +199,30 @@ class RigidSystem {
   /// @{
   [[nodiscard]] Real press(std::size_t k) const { return force_of_row_[normal_of_[k]]; }
   [[nodiscard]] Real stick(std::size_t k) const { return force_of_row_[normal_of_[k] + 1]; }
-  /// Whether the least give in the contacts would leave these forces what they are: see FrictionModes.
-  [[nodiscard]] bool is_stable() const { return rows_.empty() || system_.determinant_sign() >= 0; }
+  /// In space: along both tangents.
+  [[nodiscard]] std::array<Real, 2> hold(std::size_t k) const {
+    return {force_of_row_[normal_of_[k] + 1], force_of_row_[normal_of_[k] + 2]};
+  }
+  /// Whether the least give in the contacts would leave these forces what they are: see FrictionModes, and of forces in
+  /// space FrictionCones.
+  [[nodiscard]] bool is_stable() const {
+    if (rows_.empty()) return true;
+    if (!rubs_in_space()) return system_.determinant_sign() >= 0;
+    constexpr Real lift = std::is_same_v<Real, float> ? Real(1e-3) : Real(1e-6);
+    const std::size_t n = rows_.size();
+    std::vector<Real> lifted = matrix_;
+    for (std::size_t i = 0; i < n; ++i) lifted[i * n + i] *= 1 + lift;
+    MinimumNorm<Real> system;
+    system.factor(n, lifted);
+    return system.determinant_sign() >= 0;
+  }
+  /// The slip of a contact in space.
+  [[nodiscard]] V slip(const ActingContact<Real, Dim>& contact) const
+    requires(Dim == 3)
+  {
+    const Body &a = bodies_[contact.a], &b = bodies_[contact.b];
+    return slip_velocity(place_of(contact.feature, a, b), a, b);
+  }
   /// How fast a force parts two bodies at a contact that slips, of how fast it would without its friction: the least of
   /// all contacts, 1 where none slips. No joints count. At 0 and below, friction jams the bodies.
   [[nodiscard]] Real least_parting() const {
@@ -352,7 +385,49 @@ class RigidSystem {
         rows_.push_back(row);
         if (contact.rubbing == Rubbing::sticks && contact.is_first) rows_.push_back(across);
       } else {
-        rows_.push_back(row);
+        add_rows_in_space(contact, at, row, with_rubbing);
+      }
+    }
+  }
+  [[nodiscard]] bool rubs_in_space() const {
+    return Dim == 3 && std::ranges::any_of(contacts_, [](const auto& one) { return one.rubbing != Rubbing::none; });
+  }
+  /// A slip that begins is 0 at the beginning.
+  void add_rows_in_space(const ActingContact<Real, 3>& contact, const ContactPlace<Real, 3>& at, Row row,
+                         bool with_rubbing) {
+    const Body &a = bodies_[contact.a], &b = bodies_[contact.b];
+    const bool slips = contact.rubbing == Rubbing::forwards;
+    if (slips && with_rubbing) {
+      row.rub = direction_of_slip(contact, at, a, b) * -contact.friction;
+      row.rub_lever_a = moment(V(at.place.value - a.x), row.rub);
+      row.rub_lever_b = moment(V(at.place.value - b.x), row.rub);
+    }
+    rows_.push_back(row);
+    if (contact.rubbing != Rubbing::sticks && !(slips && begins_ && contact.steady_below > Real(0))) return;
+    for (Row& across : tangent_rows(at, a, b)) {
+      across.a = contact.a, across.b = contact.b;
+      rows_.push_back(across);
+    }
+  }
+  /// Where a slip passes 0, friction keeps its direction, so that the motion is smooth until it ends there.
+  [[nodiscard]] static V direction_of_slip(const ActingContact<Real, 3>& contact, const ContactPlace<Real, 3>& at,
+                                           const Body& a, const Body& b) {
+    const V slip = slip_velocity(at, a, b);
+    const Real size = length(slip), ahead = dot(slip, contact.slip);
+    const Real noise = 64 * std::numeric_limits<Real>::epsilon() *
+                       (length(a.velocity_at(at.place.value)) + length(b.velocity_at(at.place.value)));
+    if (contact.steady_below > Real(0) || !(size > noise)) {
+      const V across = contact.slip - at.normal.value * dot(at.normal.value, contact.slip);
+      return across * (1 / length(across));
+    }
+    return slip * ((ahead < Real(0) ? Real(-1) : Real(1)) / size);
+  }
+  void note_slips() {
+    if constexpr (Dim == 3) {
+      for (auto& contact : contacts_) {
+        if (contact.rubbing != Rubbing::forwards) continue;
+        const Body &a = bodies_[contact.a], &b = bodies_[contact.b];
+        contact.slip = direction_of_slip(contact, place_of(contact.feature, a, b), a, b);
       }
     }
   }
@@ -453,6 +528,7 @@ class RigidSystem {
   std::vector<ActingJoint<Real, Dim>> joints_;
   std::vector<ActingContact<Real, Dim>> contacts_;
   std::vector<std::size_t> kept_;  // the rows that are solved; empty: all
+  bool begins_ = false;
   // Of the present state:
   std::vector<Row> rows_, chosen_;
   std::vector<std::size_t> first_row_of_, normal_of_;  // of joints, of contacts
