@@ -138,6 +138,7 @@ class ContactGuards {
     const auto& contact = system.contacts()[corner.contact];
     ContactFeature<Real, Dim> feature = contact.feature;
     (corner.of_b ? feature.point_b : feature.point_a) = corner.in_body;
+    (corner.of_b ? feature.rounding_b : feature.rounding_a) = corner.rounding;  // of the part, maybe another one
     return place_of(feature, system.bodies()[contact.a], system.bodies()[contact.b]);
   }
   [[nodiscard]] Real gap_of(const System& system, const Corner& corner) const {
