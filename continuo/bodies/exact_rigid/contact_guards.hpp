@@ -175,7 +175,11 @@ class ContactGuards {
     system.evaluate(t, state);
     std::vector<Real> all;
     const auto contacts = system.contacts();
-    for (std::size_t k = 0; k < contacts.size(); ++k) all.push_back(system.press(k) / force_);
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      // In space the room of what sticks tells also whether it presses.
+      const bool is_in_room = Dim == 3 && contacts[k].rubbing == Rubbing::sticks;
+      all.push_back(is_in_room ? Real(1) : system.press(k) / force_);
+    }
     if constexpr (Dim == 2) {
       add_rubbing(system, all);
     } else {

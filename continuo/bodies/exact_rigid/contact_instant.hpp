@@ -40,9 +40,10 @@ class ContactInstant {
   using Point = TouchingPoint<Real, Dim>;
   using System = RigidSystem<Real, Dim>;
 
-  /// Points are sorted by their pairs. Approaches up to `slow` are no impacts where a contact loses energy.
-  ContactInstant(System& system, std::span<const Point> points, const Real& slow)
-      : system_(system), points_(points), slow_(slow) {}
+  /// Points are sorted by their pairs. Approaches up to `slow` are no impacts where a contact loses energy. `noise` is
+  /// the error of velocities.
+  ContactInstant(System& system, std::span<const Point> points, const Real& slow, const Real& noise)
+      : system_(system), points_(points), slow_(slow), noise_(noise) {}
 
   /// Moves bodies apart that lie in each other, on the shortest way in the metric of the masses, and no point into
   /// another. What searches for contacts leave of a gap, some roundings each time, would add up where a body bounces
@@ -100,8 +101,8 @@ class ContactInstant {
   struct LastingPoint {
     std::size_t point = 0;
     Rubbing rubbing = Rubbing::none;
-    V slip{};             // in space: as in ActingContact
-    Real steady_below{};  // likewise
+    V slip{};                           // in space: as in ActingContact
+    Real steady_below{}, ends_below{};  // likewise
   };
   [[nodiscard]] std::span<const LastingPoint> lasting() const { return lasting_; }
   /// Points that neither part nor approach.
@@ -328,10 +329,12 @@ class ContactInstant {
       return {};
     }
   }
-  /// What slips slower than `steady` of the speed up to which contacts are closed may stick; slower still, it does not
-  /// slip yet.
+  /// Speeds of slips at point k: up to the first a contact may stick, and up to the second it does not slip yet.
+  [[nodiscard]] std::array<Real, 2> slow_slips(std::size_t k) const {
+    const Real unsure = std::max(Real(slow_of(k) / 10'000), noise_);
+    return {std::max(Real(slow_of(k) / 100), Real(10 * unsure)), unsure};
+  }
   [[nodiscard]] Status choose_in_space() {
-    constexpr Real steady = Real(1e-2), unsure = Real(1e-4);
     std::vector<Row> rows;
     ConeProblem<Real> problem;
     std::vector<std::array<V, 2>> across;
@@ -347,9 +350,10 @@ class ContactInstant {
       for (std::size_t i = rows.size() - 3; i < rows.size(); ++i) rows[i].a = at.a, rows[i].b = at.b;
       across.push_back({rows[rows.size() - 2].direction, rows.back().direction});
       ConeContact<Real> contact{.friction = at.material.friction};
-      const Real speed = std::hypot(slip[0], slip[1]), slow = slow_of(k);
-      contact.may_stick = speed <= slow * steady;
-      if (speed > slow * unsure) contact.slip = {slip[0] / speed, slip[1] / speed};
+      const Real speed = std::hypot(slip[0], slip[1]);
+      const auto [slow, unsure] = slow_slips(k);
+      contact.may_stick = speed <= slow;
+      if (speed > unsure) contact.slip = {slip[0] / speed, slip[1] / speed};
       problem.contacts.push_back(contact);
     }
     const std::vector<Row> joints = system_.joint_rows();
@@ -367,7 +371,11 @@ class ContactInstant {
         one.rubbing = found->modes[k] == ConeMode::sticks ? Rubbing::sticks : Rubbing::forwards;
       if (one.rubbing == Rubbing::forwards) {
         one.slip = across[k][0] * found->slips[k][0] + across[k][1] * found->slips[k][1];
-        if (!problem.contacts[k].slip) one.steady_below = slow_of(closed_[k]) * steady;
+        const auto [slow, unsure] = slow_slips(closed_[k]);
+        if (problem.contacts[k].slip)
+          one.ends_below = unsure / 2;
+        else
+          one.steady_below = slow;
       }
       lasting_.push_back(one);
     }
@@ -406,7 +414,7 @@ class ContactInstant {
 
   System& system_;
   std::span<const Point> points_;
-  Real slow_;
+  Real slow_, noise_;
   std::vector<std::size_t> closed_;
   std::vector<LastingPoint> lasting_;
 };

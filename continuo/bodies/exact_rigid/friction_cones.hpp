@@ -66,6 +66,7 @@ class FrictionCones {
     if (!(force_ > Real(0))) return {};
     constexpr int attempts = 8;
     if (auto found = settle(sweep(), false)) return found;
+    if (auto found = settle(project(), false)) return found;
     if (auto found = settle(all_closed(), false)) return found;
     for (int attempt = 0; attempt < 3; ++attempt)
       if (auto guess = pivot(attempt > 0))
@@ -151,6 +152,49 @@ class FrictionCones {
       change = std::max(change, std::abs(by));
       trial.forces[3 * k + i] = found->force[i];
       for (std::size_t row = 0; row < all_; ++row) trial.rates[row] += entry(row, 3 * k + i) * by;
+    }
+    return change;
+  }
+  /// What the fixed point of projections onto the cones does (G. de Saxce, Z.-Q. Feng, "The bipotential method", 1998),
+  /// which asks no contact alone for an answer.
+  [[nodiscard]] Trial project() const {
+    Trial trial = empty_trial();
+    Real trace(0);
+    for (std::size_t i = 0; i < all_; ++i) trace += entry(i, i);
+    const auto most_rounds = static_cast<std::size_t>(100'000'000 / (all_ * all_) + 1);
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+      Real greatest(0);
+      find_rates(trial);
+      for (std::size_t k = 0; k < points_; ++k) greatest = std::max(greatest, project_one(trial, k, 1 / trace));
+      if (!(greatest > small / 1000)) break;
+    }
+    find_rates(trial);
+    for (std::size_t k = 0; k < points_; ++k) read_mode(trial, k);
+    return trial;
+  }
+  [[nodiscard]] Real project_one(Trial& trial, std::size_t k, const Real& part) const {
+    const ConeContact<Real>& contact = of_.contacts[k];
+    const auto rate = std::span(trial.rates).subspan(3 * k, 3);
+    const std::array<Real, 3> before{trial.forces[3 * k], trial.forces[3 * k + 1], trial.forces[3 * k + 2]};
+    std::array<Real, 3> force{before[0] - part * rate[0], before[1] - part * rate[1], before[2] - part * rate[2]};
+    if (closed_mode(k) == ConeMode::sticks) {
+      force[0] -= part * contact.friction * std::hypot(rate[1], rate[2]);
+      const Real across = std::hypot(force[1], force[2]), mu = contact.friction;
+      if (mu * across <= -force[0]) {
+        force = {};
+      } else if (across > mu * force[0]) {
+        const Real normal = (force[0] + mu * across) / (1 + mu * mu);
+        force = {normal, force[1] / across * mu * normal, force[2] / across * mu * normal};
+      }
+    } else {
+      const Real normal = std::max(Real(0), force[0]);
+      const Real across = is_smooth(k) ? Real(0) : -contact.friction * normal;
+      force = {normal, across * std::cos(trial.angles[k]), across * std::sin(trial.angles[k])};
+    }
+    Real change(0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      change = std::max(change, std::abs(force[i] - before[i]));
+      trial.forces[3 * k + i] = force[i];
     }
     return change;
   }
@@ -406,7 +450,7 @@ class FrictionCones {
     const bool presses = trial.forces[3 * k] > -small;
     ConeMode& mode = trial.modes[k];
     if (mode == ConeMode::open) {
-      mode = closed_mode(k);
+      read_mode(trial, k);
     } else if (!presses) {
       mode = ConeMode::open;
     } else if (mode == ConeMode::sticks) {

@@ -492,7 +492,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (is_gathered_[joint.a] || is_gathered_[joint.b]) instant.add(joint, bodies_);
     std::vector<Point> points = find_points(instant, bodies);
     if (std::ranges::any_of(points, [&](const Point& point) { return is_deep(point); })) {
-      ContactInstant<Real, Dim>(instant, points, Real(0)).separate();
+      ContactInstant<Real, Dim>(instant, points, Real(0), Real(0)).separate();
       for (std::size_t k = 0; k < instant.moving(); ++k) bodies_[bodies[k]] = instant.bodies()[k];
       points = find_points(instant, bodies);
     }
@@ -500,7 +500,11 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     Real pull(0);
     for (std::uint32_t k = 0; k < instant.moving(); ++k) pull = std::max(pull, length(instant.linear(k)));
     for (const Point& point : points) pull = std::max(pull, pull_at(instant, point));
-    ContactInstant<Real, Dim> resolver(instant, points, Real(pull * contact_time_));
+    Real noise(0);
+    for (const std::uint32_t i : bodies)
+      noise = std::max(noise, Real(4 * options_.tolerance *
+                                   (length(bodies_[i].v) + (1 + length(bodies_[i].spin)) * world_.radius[i])));
+    ContactInstant<Real, Dim> resolver(instant, points, Real(pull * contact_time_), noise);
     Status status = resolver.strike([&](std::size_t k, const Real& impulse) {
       if (impulse > Real(0)) note_impact(instant, points[k], impulse);
     });
@@ -740,7 +744,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
                                        .friction = at.material.friction,
                                        .is_first = at.pair != last_pair,
                                        .slip = one.slip,
-                                       .steady_below = one.steady_below};
+                                       .steady_below = one.steady_below,
+                                       .ends_below = one.ends_below};
       if (!is_here(contact.a) && !is_here(contact.b)) continue;
       last_pair = at.pair;
       system.add(contact, bodies_);

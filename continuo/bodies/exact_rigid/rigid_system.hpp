@@ -40,6 +40,7 @@ struct ActingContact {
   Vector<Real, Dim>
       slip{};           // the direction of the slip at the end of the last step, or against it once it has passed 0
   Real steady_below{};  // up to this slip friction keeps its direction: below, that of a slip is not sure
+  Real ends_below{};    // a slip that falls to this is at its end but for errors
 };
 
 /// The state: of each moving body position, velocity, orientation and angular momentum; then the impulse of each

@@ -38,9 +38,9 @@ template <class Real>
   return ConeRoom<Real>(reduced.matrix(), friction).widen(forces);
 }
 
-/// The room of all that sticks; of each contact that slips what is left of its slip until it turns round, and of one
-/// that has begun to slip what is left until its direction is sure; then whether the forces of all that slip are
-/// stable. In units of a force and a speed.
+/// The room of all that sticks; of each contact that slips what is left of its slip until it turns round, or turns
+/// about 0 within its errors, and of one that has begun to slip what is left until its direction is sure; then whether
+/// the forces of all that slip are stable. In units of a force and a speed.
 template <class Real>
 void add_rubbing_in_space(const RigidSystem<Real, 3>& system, const Real& force, const Real& speed,
                           std::vector<Real>& all) {
@@ -52,6 +52,7 @@ void add_rubbing_in_space(const RigidSystem<Real, 3>& system, const Real& force,
     const auto slip = system.slip(one);
     all.push_back(dot(slip, one.slip) / speed);
     if (one.steady_below > Real(0)) all.push_back((one.steady_below - length(slip)) / speed);
+    if (one.ends_below > Real(0)) all.push_back((length(slip) - one.ends_below) / speed);
   }
   if (sticks) all.push_back(room_of_sticking(system) / force);
   if (slips) all.push_back(system.is_stable() ? Real(1) : Real(-1));
