@@ -234,11 +234,12 @@ class ExactWorld {
   std::vector<std::pair<std::size_t, std::size_t>> joined;
   ExactWorldKind kind;
 
-  ExactWorld(unsigned seed, bool alike) : numbers_(seed) {
+  /// With friction in half of the worlds, where `may_rub`.
+  ExactWorld(unsigned seed, bool alike, bool may_rub = Dim == 2) : numbers_(seed) {
     kind.gravity = numbers_.one_in(3) ? 0 : 9.81;
     kind.has_walls = !numbers_.one_in(5) || kind.gravity > 0;
     kind.restitution = numbers_.one_in(3) ? 1 : numbers_.one_in(3) ? 0 : numbers_.between(0, 1);
-    kind.friction = Dim == 3 || numbers_.one_in(2) ? 0 : numbers_.between(0.05, 1);
+    kind.friction = !may_rub || numbers_.one_in(2) ? 0 : numbers_.between(0.05, 1);
     kind.bodies = 2 + numbers_.below(7);
     kind.joints = numbers_.one_in(3) ? 1 + numbers_.below(2) : 0;
     kind.is_level = numbers_.one_in(3);

@@ -329,11 +329,8 @@ class ContactInstant {
       return {};
     }
   }
-  /// Speeds of slips at point k: up to the first a contact may stick, and up to the second it does not slip yet.
-  [[nodiscard]] std::array<Real, 2> slow_slips(std::size_t k) const {
-    const Real unsure = std::max(Real(slow_of(k) / 10'000), noise_);
-    return {std::max(Real(slow_of(k) / 100), Real(10 * unsure)), unsure};
-  }
+  /// Up to this speed a slip is none but for errors.
+  [[nodiscard]] Real least_slip(std::size_t k) const { return std::max(Real(slow_of(k) / 10'000), noise_); }
   [[nodiscard]] Status choose_in_space() {
     std::vector<Row> rows;
     ConeProblem<Real> problem;
@@ -351,9 +348,7 @@ class ContactInstant {
       across.push_back({rows[rows.size() - 2].direction, rows.back().direction});
       ConeContact<Real> contact{.friction = at.material.friction};
       const Real speed = std::hypot(slip[0], slip[1]);
-      const auto [slow, unsure] = slow_slips(k);
-      contact.may_stick = speed <= slow;
-      if (speed > unsure) contact.slip = {slip[0] / speed, slip[1] / speed};
+      if (speed > least_slip(k)) contact.slip = {slip[0] / speed, slip[1] / speed};
       problem.contacts.push_back(contact);
     }
     const std::vector<Row> joints = system_.joint_rows();
@@ -371,11 +366,9 @@ class ContactInstant {
         one.rubbing = found->modes[k] == ConeMode::sticks ? Rubbing::sticks : Rubbing::forwards;
       if (one.rubbing == Rubbing::forwards) {
         one.slip = across[k][0] * found->slips[k][0] + across[k][1] * found->slips[k][1];
-        const auto [slow, unsure] = slow_slips(closed_[k]);
-        if (problem.contacts[k].slip)
-          one.ends_below = unsure / 2;
-        else
-          one.steady_below = slow;
+        const Real least = least_slip(closed_[k]);
+        (problem.contacts[k].slip ? one.ends_below : one.steady_below) =
+            problem.contacts[k].slip ? least / 2 : std::max(Real(10 * least), Real(slow_of(closed_[k]) / 100));
       }
       lasting_.push_back(one);
     }

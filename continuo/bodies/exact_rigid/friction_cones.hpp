@@ -93,7 +93,7 @@ class FrictionCones {
     return trial.modes[k] == ConeMode::slips && !of_.contacts[k].slip && !is_smooth(k);
   }
   [[nodiscard]] ConeMode closed_mode(std::size_t k) const {
-    return of_.contacts[k].may_stick && !is_smooth(k) ? ConeMode::sticks : ConeMode::slips;
+    return of_.contacts[k].slip || is_smooth(k) ? ConeMode::slips : ConeMode::sticks;
   }
   [[nodiscard]] Trial empty_trial() const {
     Trial trial{.modes = std::vector<ConeMode>(points_, ConeMode::open),
@@ -207,16 +207,8 @@ class FrictionCones {
       return;
     }
     trial.modes[k] = closed_mode(k);
-    const auto& contact = of_.contacts[k];
-    if (trial.modes[k] != ConeMode::sticks) return;
-    if (contact.slip) {
-      const Real force = std::hypot(trial.forces[3 * k + 1], trial.forces[3 * k + 2]);
-      if (trial.forces[3 * k] > Real(0) && force >= contact.friction * trial.forces[3 * k] * (1 - near) &&
-          std::hypot(across[0], across[1]) > near)
-        trial.modes[k] = ConeMode::slips;
-    } else if (std::hypot(across[0], across[1]) > near) {
+    if (trial.modes[k] == ConeMode::sticks && std::hypot(across[0], across[1]) > near)
       trial.modes[k] = ConeMode::slips, trial.angles[k] = std::atan2(across[1], across[0]);
-    }
   }
   /// With pyramids of eight sides as cones: of each contact a normal force, and of each that may stick eight forces
   /// across and a slip (see FrictionModes::try_pivots).
@@ -270,7 +262,7 @@ class FrictionCones {
       for (std::size_t s = 0; s < sides; ++s)
         for (std::size_t i = 0; i < 2; ++i) force[i] += (*z)[first[k] + 1 + s] * side[s][i];
       trial.modes[k] = ConeMode::slips;
-      if (!of_.contacts[k].slip) trial.angles[k] = std::atan2(-force[1], -force[0]);
+      trial.angles[k] = std::atan2(-force[1], -force[0]);
     }
     return trial;
   }
@@ -455,7 +447,7 @@ class FrictionCones {
       mode = ConeMode::open;
     } else if (mode == ConeMode::sticks) {
       mode = ConeMode::slips;
-      if (!of_.contacts[k].slip) trial.angles[k] = std::atan2(-trial.forces[3 * k + 2], -trial.forces[3 * k + 1]);
+      trial.angles[k] = std::atan2(-trial.forces[3 * k + 2], -trial.forces[3 * k + 1]);
     } else {
       mode = ConeMode::sticks;
     }

@@ -14,11 +14,10 @@ namespace continuo {
 /// What a contact does: it parts, holds without slip, or slips with friction against the slip.
 enum class ConeMode : std::uint8_t { open, sticks, slips };
 
-/// A contact with Coulomb's friction: whether it may stick, and the direction of its slip where it slips already.
+/// A contact with Coulomb's friction, and the direction of its slip where it slips already: then it cannot stick.
 template <class Real>
 struct ConeContact {
   Real friction{};
-  bool may_stick = true;
   std::optional<std::array<Real, 2>> slip{};  // of length 1, by the tangents
 };
 
@@ -97,22 +96,20 @@ template <class Real>
     return ConeForce<Real>{{force.normal, across * slip[0], across * slip[1]}, ConeMode::slips};
   };
   if (!(contact.friction > Real(0))) return sliding({Real(1), Real(0)});
-  if (contact.may_stick) {
-    // Cramer's rule.
-    const auto& w = response;
-    const auto minor = [&](std::size_t i, std::size_t j) {
-      const std::size_t r = (i + 1) % 3, s = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      return w[r][c] * w[s][d] - w[r][d] * w[s][c];
-    };
-    const Real whole = w[0][0] * minor(0, 0) + w[0][1] * minor(0, 1) + w[0][2] * minor(0, 2);
-    if (whole > Real(0)) {
-      ConeForce<Real> held{{}, ConeMode::sticks};
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) held.force[i] -= minor(j, i) / whole * rate[j];
-      if (std::hypot(held.force[1], held.force[2]) <= contact.friction * held.force[0]) return held;
-    }
-  }
   if (contact.slip) return sliding(*contact.slip);
+  // Cramer's rule.
+  const auto& w = response;
+  const auto minor = [&](std::size_t i, std::size_t j) {
+    const std::size_t r = (i + 1) % 3, s = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+    return w[r][c] * w[s][d] - w[r][d] * w[s][c];
+  };
+  const Real whole = w[0][0] * minor(0, 0) + w[0][1] * minor(0, 1) + w[0][2] * minor(0, 2);
+  if (whole > Real(0)) {
+    ConeForce<Real> held{{}, ConeMode::sticks};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) held.force[i] -= minor(j, i) / whole * rate[j];
+    if (std::hypot(held.force[1], held.force[2]) <= contact.friction * held.force[0]) return held;
+  }
   const auto angle = direction_of_slip(response, rate, contact.friction);
   if (!angle) return {};
   return sliding({std::cos(*angle), std::sin(*angle)});
