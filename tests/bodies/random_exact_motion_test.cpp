@@ -26,9 +26,9 @@ double energy(const World<double, Dim>& world) {
 /// Each state after a call that succeeds is held against the laws. A millionth of a second first brings the velocities
 /// of joined bodies together.
 template <int Dim>
-void try_one(unsigned seed, Tally& tally) {
+void try_one(unsigned seed, Tally& tally, bool may_rub = Dim == 2) {
   SCOPED_TRACE(std::to_string(Dim) + " dimensions, seed " + std::to_string(seed));
-  ExactWorld<Dim> made(seed, seed % 2 == 0);
+  ExactWorld<Dim> made(seed, seed % 2 == 0, may_rub);
   World<double, Dim>& world = made.world;
   const ExactWorldKind& kind = made.kind;
   ExactMotion<double, Dim> motion(world, {.most_events = 5000});  // some worlds have no end of bounces
@@ -71,6 +71,19 @@ void try_many(unsigned first, unsigned end) {
   }
   EXPECT_GT(tally.finished, 4 * tally.stopped);
   EXPECT_GT(tally.touched, tally.finished);
+}
+/// Worlds of space of which half have friction.
+void try_many_that_rub(unsigned first, unsigned end) {
+  Tally tally;
+  for (unsigned seed = first; seed < end; ++seed) try_one<3>(seed, tally, true);
+  EXPECT_GT(tally.finished, 4 * tally.stopped);
+  EXPECT_GT(tally.touched, tally.finished);
+}
+TEST(RandomExactMotion, KeepsTheLawsWithFrictionInSpace) {
+  try_many_that_rub(3000, 3020);
+}
+TEST(RandomExactMotion, KeepsTheLawsWithFrictionInMoreWorldsOfSpace) {
+  try_many_that_rub(4000, 4020);
 }
 TEST(RandomExactMotion, KeepsTheLaws) {
   try_many(1000, 1012);
