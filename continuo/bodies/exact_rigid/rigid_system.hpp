@@ -19,6 +19,7 @@
 #include <continuo/bodies/exact_rigid/contact_tangents.hpp>
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
 #include <continuo/bodies/exact_rigid/minimum_norm.hpp>
+#include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 #include <continuo/bodies/forces.hpp>
 
 namespace continuo {
@@ -210,7 +211,7 @@ class RigidSystem {
     if (rows_.empty()) return true;
     if (!rubs_in_space()) return system_.determinant_sign() >= 0;
     constexpr Real lift = std::is_same_v<Real, float> ? Real(1e-3) : Real(1e-6);
-    const std::size_t n = rows_.size();
+    const std::size_t n = rows_.size() - first_row_of_.back();
     std::vector<Real> lifted = matrix_;
     for (std::size_t i = 0; i < n; ++i) lifted[i * n + i] *= 1 + lift;
     MinimumNorm<Real> system;
@@ -341,6 +342,7 @@ class RigidSystem {
     force_of_row_.assign(rows_.size(), Real(0));
     if (rows_.empty()) return;
     find_accelerations();
+    if (rubs_in_space()) return share_forces();
     std::vector<Row>& solved = chosen_;
     solved.clear();
     if (kept_.empty()) {
@@ -355,6 +357,27 @@ class RigidSystem {
     for (std::size_t k = 0; k < solved.size(); ++k) {
       force_of_row_[kept_.empty() ? k : kept_[k]] = wanted_[k];
       push(solved[k], wanted_[k]);
+    }
+  }
+  /// Forces of contacts in space that are not determined are the least that hold, whatever the joints do: as those with
+  /// which the contacts were chosen (FrictionCones).
+  void share_forces() {
+    const std::size_t joints = first_row_of_.back();
+    const std::span<const Row> all(rows_);
+    ReducedContacts<Real, Dim> reduced(bodies_.data(), all.first(joints), all.subspan(joints));
+    matrix_.assign(reduced.matrix().begin(), reduced.matrix().end());
+    wanted_.clear();
+    for (const Row& row : rows_) wanted_.push_back(free_acceleration(row));
+    const auto middle = wanted_.begin() + static_cast<std::ptrdiff_t>(joints);
+    const std::vector<Real> of_joints(wanted_.begin(), middle);
+    std::vector<Real> forces = reduced.rates(of_joints, {middle, wanted_.end()});
+    for (Real& force : forces) force = -force;
+    system_.factor(forces.size(), matrix_);
+    system_.solve(forces);
+    const std::vector<Real> answers = reduced.answers(of_joints, forces);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      force_of_row_[r] = r < joints ? answers[r] : forces[r - joints];
+      push(rows_[r], force_of_row_[r]);
     }
   }
 
