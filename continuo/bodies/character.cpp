@@ -18,6 +18,7 @@ class Mover {
   Mover(const World<Real, Dim>& world, const Queries<Real, Dim>& queries, const CharacterOptions<Real>& options)
       : world_(world), queries_(queries), options_(options), least_up_(std::cos(options.steepest)) {
     up_[Dim - 1] = Real(1);
+    options_.filter.sensors = false;  // they push nothing
     shape_.shape = Capsule<Real>{options.height - 2 * options.radius, options.radius};
   }
 
@@ -174,6 +175,8 @@ class Mover {
   bool hits_ground_ = false, hits_ceiling_ = false;  // of the last slide
 };
 
+}  // namespace
+
 template <class Real>
 Status check(const CharacterOptions<Real>& options) {
   const auto is_size = [](const Real& value) { return value > Real(0) && std::isfinite(value); };
@@ -189,8 +192,6 @@ Status check(const CharacterOptions<Real>& options) {
   return {};
 }
 
-}  // namespace
-
 template <class Real, int Dim>
 Result<Character<Real, Dim>> walk(const World<Real, Dim>& world, const Queries<Real, Dim>& queries,
                                   const Character<Real, Dim>& character, const Vector<Real, Dim>& velocity,
@@ -201,6 +202,9 @@ Result<Character<Real, Dim>> walk(const World<Real, Dim>& world, const Queries<R
   if (!(duration >= Real(0)) || !std::isfinite(duration)) return invalid_input("the duration must be 0 or more");
   return Mover<Real, Dim>(world, queries, options).moved(character, velocity, duration);
 }
+
+template Status check(const CharacterOptions<float>&);
+template Status check(const CharacterOptions<double>&);
 
 template Result<Character<float, 2>> walk(const World<float, 2>&, const Queries<float, 2>&, const Character<float, 2>&,
                                           const Vector<float, 2>&, const float&, const CharacterOptions<float>&);

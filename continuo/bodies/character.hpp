@@ -23,7 +23,7 @@ struct CharacterOptions {
   Real highest_step = Real(0.3);        // that it goes up, and down without falling
   Real skin = Real(0.005);              // distance that it keeps from all surfaces, to one half of it
   Real fall_acceleration = Real(9.81);  // where there is no ground
-  QueryFilter filter{};                 // what is solid to it
+  QueryFilter filter{};                 // what is solid to it; sensors never are
 };
 
 /// Where a character is, and on what it stands.
@@ -37,6 +37,10 @@ struct Character {
   Vector<Real, Dim> local_foot{};  // a point of that body, in the frame of its shape's axes about its centre
   Vector<Real, Dim> foot{};        // where this was
 };
+
+/// Fails for options that make no sense; the message says which.
+template <class Real>
+[[nodiscard]] Status check(const CharacterOptions<Real>& options);
 
 /// The character after `duration`: it is carried by the ground on which it stood, walks with the horizontal part of
 /// `velocity`, and falls where there is no ground. On slopes and steps its horizontal velocity stays the same. A

@@ -107,6 +107,7 @@ Queries<Real, Dim>::Queries(const World<Real, Dim>& world)
               .number = static_cast<std::uint32_t>(i),
               .group = world.group(i),
               .category = world.traits(i).category,
+              .is_sensor = world.traits(i).is_sensor,
               .body = world.handle(i)};
     item.solid = world.shared_solid(i);
     if (!item.solid) items_.push_back(item);

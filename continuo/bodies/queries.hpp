@@ -48,6 +48,7 @@ struct QueryFilter {
   std::uint32_t groups = ~std::uint32_t{0};      // bit i: the bodies of group i; by default all
   bool walls = true;                             // walls too
   bool meshes = true;                            // static meshes too
+  bool sensors = true;                           // bodies that are sensors too
   std::uint64_t categories = ~std::uint64_t{0};  // bits of BodyTraits::category and MeshDefinition::category
   BodyHandle without{};                          // a body that is left out, as the one that asks; by default none
 };
@@ -154,13 +155,14 @@ class Queries {
     Real radius{};                                    // of a ball
     std::uint32_t number = 0, group = 0;              // of the body
     std::uint64_t category = 1;
+    bool is_sensor = false;
     BodyHandle body{};
   };
   class ShapeSearch;
 
   [[nodiscard]] static bool takes(const QueryFilter& filter, const Item& item) {
     return (filter.groups >> item.group & 1u) != 0 && (filter.categories & item.category) != 0 &&
-           item.body != filter.without;
+           (filter.sensors || !item.is_sensor) && item.body != filter.without;
   }
   [[nodiscard]] bool takes(const QueryFilter& filter, std::uint32_t mesh) const {
     return filter.meshes && meshes_[mesh].geometry && (filter.categories & meshes_[mesh].category) != 0;

@@ -143,16 +143,13 @@ class VehicleStep {
   /// Where the wheels are.
   [[nodiscard]] Status find_contacts(const Queries<Real, Dim>& queries) {
     QueryFilter filter = vehicle_.filter;
-    filter.without = vehicle_.chassis;
+    filter.without = vehicle_.chassis, filter.sensors = false;
     for (std::size_t k = 0; k < states_.size(); ++k) {
       states_[k].steer = controls_.steer * vehicle_.wheels[k].greatest_steer;
       frames_.push_back(frame_of(k));
       const WheelRays<Real, Dim> rays(vehicle_.wheels[k], frames_[k]);
-      auto hits = queries.first_hits(rays.rays(), filter);
+      const auto hits = queries.first_hits(rays.rays(), filter);
       if (!hits) return hits.status();
-      for (std::size_t r = 0; world_.has_traits() && r < hits->size(); ++r)
-        if (is_sensor((*hits)[r]))
-          if (Status fault = look_through(queries, rays.rays()[r], filter, (*hits)[r]); !fault) return fault;
       const auto contact = rays.contact(*hits);
       prepare(k, contact ? &*contact : nullptr);
     }
@@ -239,19 +236,6 @@ class VehicleStep {
     Real spin{}, target{}, low{}, high{}, impulse{};
     std::size_t contact = 0;  // into contacts_; beyond these in the air
   };
-
-  [[nodiscard]] bool is_sensor(const RayHit<Real, Dim>& hit) const {
-    return world_.contains(hit.body) && world_.traits(world_.index(hit.body)).is_sensor;
-  }
-  /// What a ray hits behind sensors, which push nothing.
-  [[nodiscard]] Status look_through(const Queries<Real, Dim>& queries, const Ray<Real, Dim>& ray,
-                                    const QueryFilter& filter, RayHit<Real, Dim>& hit) const {
-    const auto all = queries.all_hits(ray, filter);
-    if (!all) return all.status();
-    const auto solid = std::ranges::find_if(*all, [&](const auto& one) { return !is_sensor(one); });
-    hit = solid != all->end() ? *solid : RayHit<Real, Dim>{.distance = std::numeric_limits<Real>::infinity()};
-    return {};
-  }
 
   /// The place of a body of the world, or of what is no body.
   std::size_t add_body(std::size_t index) {

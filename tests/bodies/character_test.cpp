@@ -161,6 +161,31 @@ TEST(Character, IsCarriedByPlatforms) {
   EXPECT_NEAR(of.position[2], 0.5 + skin, skin);
 }
 
+/// What only senses neither bears it nor stops it, wherever that is: the same walk to the bit as without.
+template <int Dim>
+void expect_walk_through_sensors() {
+  const auto alone = world_on_slope<Dim>(0, 0.5);
+  auto other = alone;
+  for (const auto& [x, height] : {std::pair(0.0, 0.5), {1.0, 1.0}, {2.0, 0.1}, {2.5, 2.0}}) {
+    Box<double, Dim> box;
+    for (double& side : box.size.components) side = 0.6;
+    ASSERT_TRUE(other.add(
+        {.shape = box, .position = upright_vector<Dim>(x, height), .fixed = true, .traits = {.is_sensor = true}}));
+  }
+  auto of = at<Dim>(0, 3), with_sensors = of;
+  for (const double speed : {0.0, 2.0, -1.0}) {
+    of.rise = with_sensors.rise = speed;
+    of = walked<Dim>(alone, of, upright_vector<Dim>(speed, 0), 90);
+    with_sensors = walked<Dim>(other, with_sensors, upright_vector<Dim>(speed, 0), 90);
+    EXPECT_EQ(with_sensors.position, of.position) << speed;
+    EXPECT_TRUE(with_sensors.is_on_ground && with_sensors.ground == BodyHandle{}) << speed;
+  }
+}
+TEST(Character, WalksThroughSensors) {
+  expect_walk_through_sensors<2>();
+  expect_walk_through_sensors<3>();
+}
+
 TEST(Character, ErrorsSayWhatIsWrong) {
   const World<double, 3> world;
   const Queries<double, 3> queries(world);
