@@ -177,9 +177,9 @@ class Preparation {
 
 }  // namespace
 
-LiveModel prepare(model::Model model, const Taken& taken) {
+LiveModel prepare(model::Model model, Keys keys, const Taken& taken) {
   for (model::Input& input : model.inputs) {
-    if (!input.key.empty() || taken.contains(input.name)) input.points.reset();
+    if ((keys == Keys::are_pressed && !input.key.empty()) || taken.contains(input.name)) input.points.reset();
   }
   return Preparation(std::move(model)).make();
 }

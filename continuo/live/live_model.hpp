@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <continuo/live/motion/drag_target.hpp>
+#include <continuo/live/settings.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::live {
@@ -74,9 +75,9 @@ struct LiveModel {
 /// computed with them.
 using Variables = std::shared_ptr<const std::vector<double>>;
 
-/// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
+/// Inputs that somebody moves (those with a key that may be pressed, and `taken`) do not follow their files.
 using Taken = std::set<std::string, std::less<>>;
 /// Prepares a model to be shown. Compiles its equations.
-[[nodiscard]] LiveModel prepare(model::Model model, const Taken& taken = {});
+[[nodiscard]] LiveModel prepare(model::Model model, Keys keys, const Taken& taken = {});
 
 }  // namespace continuo::live

@@ -1,6 +1,7 @@
 // continuo/live/settings.hpp
 // What somebody at the page may choose, and where the models come from.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,11 +30,15 @@ struct GalleryModel {
   std::string name, title, path, subject{};
 };
 
+/// Whether somebody may press keys. Inputs that have one do not follow their files then.
+enum class Keys : std::uint8_t { are_pressed, rest };
+
 /// Where models come from.
 struct Place {
   std::string path;                     // of the model that was named: the only file that is ever written; empty: none
   std::vector<GalleryModel> gallery{};  // what can be opened besides
   bool writable = true;                 // the file of the model
+  Keys keys = Keys::are_pressed;        // of inputs
 };
 
 /// The models of a folder, each with the first line of its heading. A file `gallery.txt` in the folder gives their

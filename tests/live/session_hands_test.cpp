@@ -265,5 +265,24 @@ TEST(LiveHands, AnInputKeepsToItsFileWhileASliderMoves) {
   EXPECT_NEAR(stage.state("x"), moved + 5 * (stage.session->shown_time() - then), 1e-9);
 }
 
+/// Where nobody can press the key, as in a film of a run, the input follows its file.
+TEST(LiveHands, AnInputWithAKeyFollowsItsFileWhereKeysRest) {
+  const auto csv = std::filesystem::path(::testing::TempDir()) / "live_keys.csv";
+  std::ofstream(csv) << "t,u\n0,1\n1,5\n9,5\n";
+  const std::string text =
+      "input u = 0 in 0..9 key \"w\" from \"" + csv.string() + "\" step\nx' = u\nx(0) = 0\nrun 0..10\n";
+  for (const Keys keys : {Keys::are_pressed, Keys::rest}) {
+    Stage stage(text, keys);
+    stage.play(2);
+    const double t = stage.session->shown_time();
+    ASSERT_GT(t, 1);
+    EXPECT_NEAR(stage.state("x"), keys == Keys::rest ? 1 + 5 * (t - 1) : 0, 1e-9);
+    stage.session->move_input("u", 2);  // a hand takes it all the same
+    stage.run(0.5);
+    const double moved = stage.session->shown_time() - t;
+    EXPECT_NEAR(stage.state("x"), (keys == Keys::rest ? 1 + 5 * (t - 1) : 0) + 2 * moved, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace continuo::live

@@ -34,13 +34,13 @@ class Spectator final : public Audience {
 /// A model of the test's own, or of the gallery, with its clock.
 class Stage {
  public:
-  explicit Stage(const std::string& text_or_name) : path(file_of(text_or_name)) {
+  explicit Stage(const std::string& text_or_name, Keys keys = Keys::are_pressed) : path(file_of(text_or_name)) {
     session = std::make_unique<Session>(
         [this] {
           wall += cost;
           return wall;
         },
-        audience, Place{.path = path});
+        audience, Place{.path = path, .keys = keys});
     const model::Loaded loaded = session->open_file();
     EXPECT_TRUE(loaded.model) << loaded.text();
   }

@@ -66,7 +66,7 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   if (film && !can_film(request.pictures)) return usage;
   double wall = 0;
   Recorder recorder;
-  live::Session session([&wall] { return wall; }, recorder, {.path = request.model});
+  live::Session session([&wall] { return wall; }, recorder, {.path = request.model, .keys = live::Keys::rest});
   if (const ExitCode exit = set_up(session); exit != done) return exit;
   recorder.begin();
   session.reset();

@@ -148,7 +148,7 @@ void Interaction::move_input(const std::string& name, double value) {
 void Interaction::prepare_anew() {
   model::Loaded loaded = load(text_);
   if (!loaded.model) return;
-  auto shown = std::make_shared<const LiveModel>(prepare(std::move(*loaded.model), settings_.taken));
+  auto shown = std::make_shared<const LiveModel>(prepare(std::move(*loaded.model), keys_, settings_.taken));
   auto main = planned_track(*shown, settings_, settings_.method, playback_.interrupt(), notices_);
   if (!main) return;
   auto ghost =

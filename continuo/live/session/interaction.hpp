@@ -25,9 +25,14 @@ class Interaction {
  public:
   /// The arguments outlive the interaction. `on_new_program` is called when the program of the run that is shown has
   /// been made anew.
-  Interaction(const WallClock& now, const ModelText& text, Playback& playback, Notices& notices,
+  Interaction(const WallClock& now, const ModelText& text, Playback& playback, Notices& notices, Keys keys,
               std::function<void()> on_new_program)
-      : now_(now), text_(text), playback_(playback), notices_(notices), on_new_program_(std::move(on_new_program)) {}
+      : now_(now),
+        text_(text),
+        playback_(playback),
+        notices_(notices),
+        keys_(keys),
+        on_new_program_(std::move(on_new_program)) {}
 
   const Settings& settings() const { return settings_; }
   std::size_t undo_count() const { return undo_.size(); }
@@ -70,6 +75,7 @@ class Interaction {
   const ModelText& text_;
   Playback& playback_;
   Notices& notices_;
+  Keys keys_;
   std::function<void()> on_new_program_;
   Settings settings_;
   std::vector<Undo> undo_;

@@ -46,7 +46,7 @@ Session::Session(Now now, Audience& audience, Place place)
       rows_(pending_),
       playback_(now_, notices_, pending_, rows_),
       drag_(now_, playback_, notices_),
-      interaction_(now_, text_, playback_, notices_, [this] {
+      interaction_(now_, text_, playback_, notices_, place_.keys, [this] {
         drag_.show();
         scene_.show(*playback_.shown(), playback_.variables());
         say_model();
@@ -71,8 +71,8 @@ void Session::open_mistaken(const model::Loaded& loaded) {
 /// False where it cannot be run: then everything is as it was.
 bool Session::begin(model::Model model, ModelText text, std::vector<model::Diagnostic> mistakes) {
   const bool other = text.path != text_.path || !is_open() || !mistakes_.empty();
-  auto shown =
-      std::make_shared<const LiveModel>(prepare(std::move(model), other ? Taken() : interaction_.settings().taken));
+  auto shown = std::make_shared<const LiveModel>(
+      prepare(std::move(model), place_.keys, other ? Taken() : interaction_.settings().taken));
   const Settings settings = interaction_.settings();
   ModelText before = std::exchange(text_, std::move(text));
   mistakes.swap(mistakes_);
