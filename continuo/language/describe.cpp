@@ -139,9 +139,10 @@ class Writer {
       for (int axis = 0; axis < world.dimension; ++axis)
         at.push_back(model_.states[body.first_state + 2 * static_cast<std::size_t>(axis)].initial);
       return {body.name, "at " + point(at, start), shape(body.shape, world.dimension, start),
-              body.driven  ? "driven"
-              : body.fixed ? "fixed"
-                           : "mass " + number(body.mass, start)};
+              body.character ? "character"
+              : body.driven  ? "driven"
+              : body.fixed   ? "fixed"
+                             : "mass " + number(body.mass, start)};
     });
     section("Joints", world.joints, [&](const JointDescription& joint) -> Row {
       return {joint.is_named ? joint.name : "", joint.kind,

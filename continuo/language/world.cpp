@@ -28,6 +28,10 @@ std::vector<std::string> joint_measures(std::string_view kind, int dimension, bo
   return names;
 }
 
+std::vector<std::string> character_measures() {
+  return {"on_ground"};
+}
+
 bool WorldDescription::is_rigid() const {
   return !joints.empty() || !meshes.empty() || std::ranges::any_of(bodies, [](const BodyDescription& body) {
     return body.driven || body.shape.kind != ShapeDescription::Kind::ball || body.traits.any();

@@ -74,16 +74,20 @@ struct TraitsDescription {
 struct BodyDescription {
   std::string name;  // "ball", "grain[3]"
   ShapeDescription shape{};
-  NodeId radius;        // the greatest distance of a point from its centre of mass
-  NodeId mass;          // density times volume where none is given
-  NodeId density;       // not valid where a mass is given
-  bool fixed = false;   // nothing moves it
-  bool driven = false;  // fixed, and moves with its velocity and spin
+  NodeId radius;           // the greatest distance of a point from its centre of mass
+  NodeId mass;             // density times volume where none is given
+  NodeId density;          // not valid where a mass is given
+  bool fixed = false;      // nothing moves it
+  bool driven = false;     // fixed, and moves with its velocity and spin
+  bool character = false;  // driven, and walks: see CharacterDescription
   TraitsDescription traits{};
   std::uint32_t group = 0;
   MaterialDescription material;
   std::size_t first_state = 0;  // of its body_states(dimension) in Model::states
   Span span;
+
+  /// Whether nothing stops it: it is fixed, and does not walk.
+  [[nodiscard]] bool is_unstoppable() const { return fixed && !character; }
 };
 
 /// A wall of the half-space normal . x >= offset; a thin one has two sides. A container is several of one name.
@@ -139,6 +143,18 @@ struct JointDescription {
   Span span{};
 };
 
+/// A body that walks, as in bodies/character.hpp: an upright capsule, driven, and a sensor to all others.
+struct CharacterDescription {
+  std::size_t body = no_body;
+  NodeId radius{}, height{};  // of the capsule
+  NodeId steepest{};          // slope on which it stands, in radians
+  NodeId highest_step{};      // that it goes up
+  NodePoint walk{};           // the horizontal velocity that it wishes: one component in the plane, two in space ...
+  NodeId jump{};              // ... and the speed at which it leaves the ground, if above 0: both of everything
+  std::size_t first_measure = no_body;  // of `character_measures` in Model::states
+  Span span{};
+};
+
 /// `force on ball = (...)`, or `torque on ball = ...`, which has one component in the plane: any expressions of the
 /// model.
 struct ForceDescription {
@@ -169,10 +185,12 @@ struct WorldDescription {
   std::vector<MeshDescription> meshes;
   std::vector<SpringDescription> springs;
   std::vector<JointDescription> joints;
+  std::vector<CharacterDescription> characters;
   std::vector<ForceDescription> forces, torques;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // groups
   WorldMode mode;
-  // Of `world_measures(dimension)` in Model::states: world.kinetic, ...; those of joints follow, as the last states.
+  // Of `world_measures(dimension)` in Model::states: world.kinetic, ...; those of joints and of characters follow, as
+  // the last states.
   std::size_t first_measure = 0;
   Span span;
 
@@ -196,6 +214,9 @@ struct WorldDescription {
 /// `motor_force`.
 [[nodiscard]] std::vector<std::string> joint_measures(std::string_view kind, int dimension, bool is_named,
                                                       bool has_motor);
+
+/// What a character tells of itself beyond a body: `on_ground`, 1 where it stands, else 0.
+[[nodiscard]] std::vector<std::string> character_measures();
 
 /// So many there were until the model was in this state.
 [[nodiscard]] double collisions_of(const WorldDescription& world, std::span<const double> state);

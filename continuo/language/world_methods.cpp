@@ -67,6 +67,8 @@ std::vector<ExactRefusal> exact_refusals(const WorldDescription& world, const Mo
     return model.graph.value(material.rolling).value_or(0) > 0;
   };
   for (const BodyDescription& body : world.bodies) {
+    if (body.character) refuse("characters", body.span);
+    if (body.character) continue;
     if (body.traits.sensor || body.traits.locked != 0) refuse("sensors and no locked directions", body.span);
     if (rolls(body.material))
       refusals.push_back({"rolling resistance exists only in worlds of balls without joints", body.span});

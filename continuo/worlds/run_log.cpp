@@ -11,7 +11,7 @@ namespace continuo::worlds {
 namespace {
 
 constexpr FileFormat run_format{
-    {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 2, "this is no recording of a run", "a recording of another version"};
+    {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 3, "this is no recording of a run", "a recording of another version"};
 enum class Part : std::uint8_t { head, note, checkpoint, end };
 
 }  // namespace
@@ -33,7 +33,7 @@ void transfer(Archive& archive, Note& note) {
 template <class Archive>
 void transfer(Archive& archive, Checkpoint& checkpoint) {
   Snapshot& world = checkpoint.world;
-  archive(world.bodies), archive(world.equations), archive(world.variables);
+  archive(world.bodies), archive(world.equations), archive(world.variables), archive(world.characters);
   archive(world.time), archive(world.start), archive(world.steps);
   auto collisions = static_cast<std::uint64_t>(world.collisions), mode = static_cast<std::uint64_t>(world.mode);
   archive(collisions), archive(mode);

@@ -13,6 +13,7 @@
 #include <continuo/solve/integrator.hpp>
 #include <continuo/status/require.hpp>
 #include <continuo/worlds/build_world.hpp>
+#include <continuo/worlds/characters.hpp>
 #include <continuo/worlds/coupled_equations.hpp>
 #include <continuo/worlds/joint_states.hpp>
 #include <continuo/worlds/world_run.hpp>
@@ -49,6 +50,7 @@ class Moving final : public WorldRun {
         variables_(variables.begin(), variables.end()),
         coupled_(*program_, variables),
         motors_(*program_, variables),
+        characters_(*program_, variables),
         start_(variables[model::Layout::time]) {
     const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
     state_.assign(first, first + static_cast<std::ptrdiff_t>(model().states.size()));
@@ -68,6 +70,7 @@ class Moving final : public WorldRun {
     const bool is_first = world_.size() == 0;
     BuiltWorld<Dim> built = build_world<Dim>(model(), is_first ? variables_ : variables_of_start());
     if (!built.status) return built.status;
+    if (Status status = characters_.measure(model(), variables_, built.world); !status) return status;
     if (!is_first) {
       built.world.position = world_.position, built.world.velocity = world_.velocity;
       built.world.orientation = world_.orientation, built.world.spin = world_.spin;
@@ -138,6 +141,7 @@ class Moving final : public WorldRun {
     for (const double component : momentum(world_).components) *measure++ = component;
     *measure = static_cast<double>(collisions());
     write_joints<Dim>(world_, joints_, *model().world, state_);
+    characters_.write(state_);
     return state_;
   }
 
@@ -229,6 +233,7 @@ class Moving final : public WorldRun {
     return {.bodies = exact_ ? continuo::snapshot(world_, *exact_) : continuo::snapshot(world_, *fast_),
             .equations = companions_.state,
             .variables = variables_,
+            .characters = characters_.saved(),
             .time = world_.time,
             .start = start_,
             .steps = steps_,
@@ -247,12 +252,14 @@ class Moving final : public WorldRun {
     if (found.time != saved.time) return invalid_input("its bodies are at another time");
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
       return invalid_input("a state of its equations is not finite");
+    if (!characters_.fits(saved.characters)) return invalid_input("its characters are others, or nowhere");
     const double ahead = saved.start + static_cast<double>(saved.steps) * options_.step - saved.time;  // in its step
     const bool is_one = is_free() || std::abs(ahead - options_.step / 2) <= options_.step * 0.51;
     return is_one ? Status{} : invalid_input("its time is none of its steps");
   }
   Status restore(const Snapshot& saved) override {
-    if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size())
+    if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size() ||
+        !characters_.fits(saved.characters))
       return invalid_input("a snapshot of another model");
     if (saved.method != options_.method || saved.step != options_.step)
       return invalid_input("a snapshot of another motion");
@@ -261,6 +268,7 @@ class Moving final : public WorldRun {
     if (!status) return status;
     drop_hand();
     companions_.state = saved.equations;
+    characters_.restore(saved.characters);
     start_ = saved.start;
     steps_ = saved.steps;
     collisions_apart_ = saved.collisions - counted();
@@ -337,6 +345,7 @@ class Moving final : public WorldRun {
   void set_everywhere(std::uint32_t variable, double value) {
     coupled_.set(variable, value);
     if (!motors_.is_empty()) motors_.set(variable, value);
+    characters_.set(variable, value);
   }
 
   void make_motion() {
@@ -410,7 +419,10 @@ class Moving final : public WorldRun {
     const double from = world_.time;
     if (Status status = move_equations(from, from + options_.step / 2); !status) return status;
     if (!motors_.is_empty()) motors_.drive(from, state(), joints_, world_);
+    if (!characters_.is_empty()) characters_.prepare(from, state(), world_);
     if (Status status = fast_->advance(); !status) return status;
+    if (!characters_.is_empty())
+      if (Status status = characters_.walk(world_, options_.step); !status) return status;
     ++steps_;
     world_.time = start_ + static_cast<double>(steps_) * options_.step;  // a million steps do not drift
     note(*fast_);
@@ -462,6 +474,7 @@ class Moving final : public WorldRun {
   std::vector<std::uint32_t> set_;  // parameters that were set
   CoupledEquations<Dim> coupled_;
   MotorSpeeds motors_;
+  Characters<Dim> characters_;
   World<double, Dim> world_;
   static constexpr double hertz_of_hand = 5;
   JointHandle hand_{};                                            // that pulls

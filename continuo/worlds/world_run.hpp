@@ -115,7 +115,7 @@ struct WorldOptions {
 /// A world at an instant, with all data that a run needs to continue to the same bits.
 struct Snapshot {
   Bytes bodies;
-  std::vector<double> equations, variables;
+  std::vector<double> equations, variables, characters;
   double time = 0, start = 0;  // start: of the steps
   std::uint64_t steps = 0;
   std::size_t collisions = 0;

@@ -88,7 +88,7 @@ template <int Dim>
   Shapes shapes;
   std::map<const Solid<double, Dim>*, std::size_t> forms;  // equal bodies share their solids
   for (std::size_t i = 0; i < world.size(); ++i) {
-    shapes.bodies.push_back({text.bodies[i].name, world.radius[i], world.mass[i], world.is_fixed(i)});
+    shapes.bodies.push_back({text.bodies[i].name, world.radius[i], world.mass[i], text.bodies[i].is_unstoppable()});
     const Solid<double, Dim>* const solid = world.solid(i);
     if (!solid) continue;
     const auto [known, is_new] = forms.try_emplace(solid, shapes.forms.size());

@@ -55,9 +55,12 @@ struct Case {
 std::vector<Case> cases() {
   std::string stepped = scene;
   stepped.insert(stepped.find("  container"), "  mode fast step 1/120\n");
+  std::string walked = stepped;
+  walked.insert(walked.find("  bodies gas"), "  character hero at (2, 1) walk 0.5\n");
   return {{"exact", scene + with_events},
           {"fast", stepped + with_events},
           {"fast with equations", stepped + with_equations + "run 0..1.5 output 0.05\n"},
+          {"fast with a character", walked + with_events},
           {"exact with equations", R"(
 world { body ball at (4, 2) velocity (1, 0); body other at (7, 2); wall (0, 1) at 0
   spring ball to (0, 3) stiffness 5; gravity (0, -2) }

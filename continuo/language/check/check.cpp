@@ -13,6 +13,7 @@
 #include <continuo/language/check/views/drawing.hpp>
 #include <continuo/language/check/views/plots.hpp>
 #include <continuo/language/check/views/sweep.hpp>
+#include <continuo/language/check/world/characters.hpp>
 #include <continuo/language/check/world/forces.hpp>
 #include <continuo/language/check/world/joints.hpp>
 #include <continuo/language/check/world/make_world.hpp>
@@ -61,6 +62,7 @@ void translate(const Declarations& declared, Expressions& expressions, WorldAtWo
   store(Equations(expressions, model).solve(), model, workspace);  // derivatives in each mode
   store(pair_up(model), model);                                    // positions with their velocities
   Joints(expressions, world, model.states).make_motors();          // of the world
+  Characters(expressions, world).make_wishes();                    //
   Forces(expressions, world).make(model);                          //
   store(make_quantities(expressions), model);                      // lets, outputs, energies
   store(Events(expressions, model).make(), model);                 // with their actions

@@ -55,10 +55,11 @@ struct WorldContainer {
   WorldAttributes attributes;
 };
 
-/// `body ball at (0, 10) radius 0.5 mass 1`.
+/// `body ball at (0, 10) radius 0.5 mass 1`, `character hero at (0, 0.9) radius 0.3 height 1.8 walk gas*speed`.
 struct WorldBody {
   Name name;
   WorldAttributes attributes;
+  bool is_character = false;
 };
 
 /// `bodies grain grid 10 x 20 from (1, 1) ...`, `bodies gas random 1000 in (0, 0) to (20, 20) ...`,

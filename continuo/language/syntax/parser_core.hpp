@@ -235,6 +235,7 @@ class Parser {
   [[nodiscard]] ast::World parse_world();
   [[nodiscard]] ast::Force parse_force(bool is_torque);
   [[nodiscard]] ast::WorldItem parse_world_item();
+  [[nodiscard]] ast::WorldBody parse_world_body(bool is_character);
   [[nodiscard]] ast::WorldSetting parse_world_setting(ast::Identifier word);
   /// A half-space, a mesh or a chain.
   [[nodiscard]] decltype(ast::WorldItem::node) parse_world_wall();

@@ -16,10 +16,10 @@ namespace {
 using ast::Expression;
 using Word = std::string_view;
 
-constexpr std::array<Word, 25> item_words = {
-    "dimension", "gravity", "material",  "combine", "attraction", "drag",   "mode",  "wall", "container",
-    "body",      "bodies",  "spring",    "springs", "hinge",      "slider", "weld",  "ball", "distance",
-    "rope",      "wheel",   "universal", "gear",    "part",       "fix",    "ignore"};
+constexpr std::array<Word, 26> item_words = {
+    "dimension", "gravity", "material",  "combine",   "attraction", "drag",  "mode",   "wall",  "container",
+    "body",      "bodies",  "character", "spring",    "springs",    "hinge", "slider", "weld",  "ball",
+    "distance",  "rope",    "wheel",     "universal", "gear",       "part",  "fix",    "ignore"};
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
@@ -37,6 +37,7 @@ constexpr std::array<Word, 29> body_words = {
     "hull",     "rounding",    "mass",          "density",       "restitution",  "friction",     "rolling",  "group",
     "fixed",    "driven",      "sensor",        "gravity_scale", "damping",      "spin_damping", "locked_x", "locked_y",
     "locked_z", "locked_turn", "locked_turn_x", "locked_turn_y", "locked_turn_z"};
+constexpr std::array<Word, 8> character_words = {"at", "radius", "height", "steepest", "step", "walk", "jump", "group"};
 constexpr std::array<Word, 8> part_words = {"at", "axis", "angle", "radius", "box", "capsule", "hull", "rounding"};
 constexpr std::array<Word, 19> grid_words = {
     "from",     "spacing", "jitter", "seed",    "velocity", "angle", "spin",        "radius",   "box",    "capsule",
@@ -147,13 +148,8 @@ ast::WorldItem Parser::parse_world_item() {
     item.node = parse_world_wall();
   } else if (word == "container") {
     item.node = parse_world_container();
-  } else if (word == "body") {
-    ast::WorldBody body;
-    body.name = parse_name("the name of the body");
-    if (body.name.primes > 0 || !body.name.member.empty())
-      fail(error("E129", body.name.span, "the name of a body has no primes and no point", "", ""));
-    body.attributes = parse_world_attributes("a body", body_words);
-    item.node = std::move(body);
+  } else if (word == "body" || word == "character") {
+    item.node = parse_world_body(word == "character");
   } else if (word == "bodies") {
     item.node = parse_world_bodies();
   } else if (word == "spring") {
@@ -174,6 +170,17 @@ ast::WorldItem Parser::parse_world_item() {
   item.span = since(begin);
   expect_statement_end();
   return item;
+}
+
+ast::WorldBody Parser::parse_world_body(bool is_character) {
+  ast::WorldBody body;
+  body.is_character = is_character;
+  body.name = parse_name(is_character ? "the name of the character" : "the name of the body");
+  if (body.name.primes > 0 || !body.name.member.empty())
+    fail(error("E129", body.name.span, "the name of a body has no primes and no point", "", ""));
+  body.attributes = is_character ? parse_world_attributes("a character", character_words)
+                                 : parse_world_attributes("a body", body_words);
+  return body;
 }
 
 ast::WorldSetting Parser::parse_world_setting(ast::Identifier word) {
@@ -417,7 +424,8 @@ Expression Parser::parse_world_value(Word word) {
   if (word == "ends") return parse_points("as in ends (0, 0) (0, 5): where it holds the first and the second");
   if (word == "limits") return parse_limits();
   if (word == "torque" || word == "force") return parse_most(word);
-  if (word == "spin" || word == "angle") return parse_tree(Level::additive).expression;  // in space a list
+  if (word == "spin" || word == "angle" || word == "walk")
+    return parse_tree(Level::additive).expression;  // in space a list
   return parse_sum_of_terms();
 }
 

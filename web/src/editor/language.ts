@@ -12,8 +12,8 @@ const words = new Set([
 ]);
 // These begin something only where a name, a number or a bracket follows: `body ball`, `wall (0, 1)`. Elsewhere they are names.
 const ofBlocks = new Set([
-  "world", "force", "torque", "dimension", "gravity", "material", "combine", "attraction", "drag", "body", "bodies", "wall", "container", "spring", "springs", "hinge",
-  "slider", "weld", "ball", "distance", "rope", "wheel", "universal", "gear", "fix", "ignore", "sweep", "runs", "keep",
+  "world", "force", "torque", "dimension", "gravity", "material", "combine", "attraction", "drag", "body", "bodies", "character", "part", "wall", "container", "spring", "springs", "hinge",
+  "slider", "weld", "ball", "distance", "rope", "wheel", "universal", "gear", "pull", "fix", "ignore", "sweep", "runs", "keep",
 ]);
 const shapes = new Set(["floor", "ball", "spring", "rod", "rope", "arrow", "trail", "box", "text"]);
 const functions = new Set([

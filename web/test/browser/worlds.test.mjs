@@ -142,6 +142,34 @@ test("a walker walks faster while its key is held, and a car is driven back by i
   await picture(tab, "offroad");
 });
 
+test("a character walks, jumps and stops as its keys say, and its wall stops it", async (t) => {
+  const { url } = await serve(t, model("platforms"));
+  const tab = await open(t, url);
+  const hero = await tab.evaluate(() => globalThis.continuo.session.model.bodies.names.indexOf("hero"));
+  const place = () => tab.evaluate((i) => Array.from(globalThis.continuo.session.frame.positions.slice(2 * i, 2 * i + 2)), hero);
+  const comes = (far) => tab.waitForFunction(([i, x]) => globalThis.continuo.session.frame.positions[2 * i] > x, [hero, far], { timeout: 30000 });
+  const jumps = () => tab.waitForFunction((i) => globalThis.continuo.session.frame.positions[2 * i + 1] > 1.5, hero, { timeout: 30000 });
+  await until(tab, ({ t: time }) => time > 0.3, "it plays");
+  assert.ok(Math.abs((await place())[0]) < 1e-6, "without keys it stands, whatever the file says");
+  await tab.keyboard.down("w");
+  await jumps();
+  await tab.keyboard.up("w");
+  await tab.keyboard.down("d");
+  await comes(6.2);  // up the stairs
+  await picture(tab, "platforms");
+  await tab.keyboard.up("d");
+  await tab.waitForTimeout(300);
+  const [stood, height] = await place();
+  assert.ok(Math.abs(height - 2.155) < 0.01, `it stands on the stairs: ${height}`);
+  await tab.waitForTimeout(300);
+  assert.ok(Math.abs((await place())[0] - stood) < 1e-6, "it stands");
+  await tab.keyboard.down("a");
+  await tab.waitForFunction((i) => globalThis.continuo.session.frame.positions[2 * i] < -1.68, hero, { timeout: 30000 });
+  await tab.waitForTimeout(300);
+  await tab.keyboard.up("a");
+  assert.ok(Math.abs((await place())[0] + 1.695) < 0.01, "the wall stops it");
+});
+
 test("ground of triangles and of segments is drawn, and belongs into the picture", async (t) => {
   const folder = mkdtempSync(path.join(tmpdir(), "continuo-ground-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));

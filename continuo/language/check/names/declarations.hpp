@@ -92,6 +92,8 @@ struct BodyText {
   Span span;
   std::string name;
   std::size_t base;  // its first
+
+  [[nodiscard]] bool is_character() const { return text && text->is_character; }
 };
 struct PatternText {
   const ast::WorldBodies* text;

@@ -9,6 +9,7 @@
 
 #include <continuo/language/check/world/attributes.hpp>
 #include <continuo/language/check/world/bodies.hpp>
+#include <continuo/language/check/world/characters.hpp>
 #include <continuo/language/check/world/materials.hpp>
 #include <continuo/language/check/world/placement.hpp>
 
@@ -83,9 +84,13 @@ void Bodies::make_body(const BodyText& body) {
   }
   const ast::WorldAttributes& attributes = body.text->attributes;
   const auto parts = parts_.find(number);
-  const MadeShape shape = parts == parts_.end() ? shapes_.make(attributes, scope) : make_compound(body, parts->second);
+  const MadeShape shape = body.is_character()     ? Characters(expressions_, work_).make(number, scope)
+                          : parts != parts_.end() ? make_compound(body, parts->second)
+                                                  : shapes_.make(attributes, scope);
   BodyDescription made = description_of(attributes, shape, scope);
   made.traits = traits_of(attributes, scope);
+  made.character = body.is_character();
+  if (made.character) made.fixed = made.driven = made.traits.sensor = true;
   made.name = body.name;
   made.first_state = expressions_.workspace.declared.bases[body.base].first;
   made.span = body.span;

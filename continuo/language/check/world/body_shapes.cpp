@@ -73,13 +73,20 @@ MadeShape BodyShapes::make_ball(const ast::WorldAttributes& attributes, Scope& s
 
 MadeShape BodyShapes::make_capsule(const ast::WorldAttributes& attributes, const ast::Expression& length,
                                    Scope& scope) const {
+  const NodeId radius = radius_of(attributes, scope);
+  const NodeId way = numbers_.number(length, scope, work_.length, "the length of a capsule", Sort::positive);
+  if (radius.valid() && way.valid()) return capsule(radius, way);
+  MadeShape made;
+  made.shape.kind = ShapeDescription::Kind::capsule;
+  made.shape.radius = radius, made.shape.length = way;
+  return made;
+}
+
+MadeShape BodyShapes::capsule(NodeId r, NodeId l) const {
   Graph& g = graph_;
   MadeShape made;
   made.shape.kind = ShapeDescription::Kind::capsule;
-  made.shape.radius = radius_of(attributes, scope);
-  made.shape.length = numbers_.number(length, scope, work_.length, "the length of a capsule", Sort::positive);
-  const NodeId r = made.shape.radius, l = made.shape.length;
-  if (!r.valid() || !l.valid()) return made;
+  made.shape.radius = r, made.shape.length = l;
   made.radius = g.add(g.multiply(g.constant(0.5), l), r);
   made.height = g.multiply(g.constant(2), made.radius);
   const NodeId middle = text_.dimension == 2

@@ -27,6 +27,8 @@ class BodyShapes {
         numbers_(expressions, work) {}
 
   [[nodiscard]] MadeShape make(const ast::WorldAttributes& attributes, Scope& scope) const;
+  /// A capsule of these numbers, which are valid.
+  [[nodiscard]] MadeShape capsule(NodeId radius, NodeId length) const;
 
  private:
   [[nodiscard]] bool is_one_shape(const ast::WorldAttributes& attributes) const;

@@ -32,7 +32,9 @@ void Bodies::find_parts() {
     Scope scope = item.scope;
     const auto body = body_named(part->of, scope, expressions_);
     if (!body) continue;
-    if (text_.bodies[*body].text) {
+    if (text_.bodies[*body].is_character()) {
+      report_.fail("E225", part->of.span, "a character has no parts", "it is a capsule");
+    } else if (text_.bodies[*body].text) {
       parts_[*body].push_back(&item);
     } else {
       report_.fail("E225", part->of.span, "the bodies of a pattern have no parts", {},

@@ -16,9 +16,11 @@ void Forces::make(const Model& model) {
     const auto body = body_named(force.text->body, scope, expressions_);
     if (!body) continue;
     if (work_.made.bodies[*body].fixed)
-      report_.warn("E294", force.text->body.span,
-                   fmt::format("`{}` is fixed: nothing moves it", work_.made.bodies[*body].name), {},
-                   "leave out what acts on it, or let it go");
+      report_.warn(
+          "E294", force.text->body.span,
+          fmt::format("`{}` {}", work_.made.bodies[*body].name,
+                      work_.made.bodies[*body].character ? "walks: no force moves it" : "is fixed: nothing moves it"),
+          {}, "leave out what acts on it, or let it go");
     if (force.text->is_torque) {
       make_torque(force, *body);
       continue;
@@ -30,10 +32,13 @@ void Forces::make(const Model& model) {
   if (text_.text) refuse_measures(model);
 }
 
-void Forces::refuse_measures(NodeId node, Span span) {
+void Forces::refuse_measures(NodeId node, Span span, bool may_ask_characters) {
+  const Layout& layout = expressions_.workspace.layout;
+  const std::size_t first = layout.states + work_.made.first_measure;
+  const std::size_t end =
+      may_ask_characters ? layout.states + work_.made.characters.front().first_measure : layout.unknowns;
   for (const std::uint32_t variable : variables_of(expressions_.workspace.graph, node)) {
-    const std::size_t first = expressions_.workspace.layout.states + work_.made.first_measure;
-    if (variable < first || variable >= expressions_.workspace.layout.unknowns) continue;
+    if (variable < first || variable >= end) continue;
     report_.fail("E226", span, "nothing can be moved by a measure of the world",
                  fmt::format("`{}` is computed for results only", name_of_variable(expressions_.workspace, variable)),
                  "write it with the bodies it is made of");
@@ -48,6 +53,9 @@ void Forces::refuse_measures(const Model& model) {
   }
   for (const JointDescription& joint : work_.made.joints)
     if (joint.motor_speed.valid()) refuse_measures(joint.motor_speed, joint.span);
+  for (const CharacterDescription& character : work_.made.characters)
+    for (const NodeId wish : {character.walk[0], character.walk[1], character.jump})
+      if (wish.valid()) refuse_measures(wish, character.span, true);
   for (const Mode& mode : model.modes) {
     for (std::size_t i = 0; i < std::min(mode.derivatives.size(), model.states.size()); ++i) {
       if (!model.states[i].in_world) refuse_measures(mode.derivatives[i], model.states[i].span);

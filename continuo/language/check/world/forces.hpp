@@ -22,7 +22,8 @@ class Forces {
  private:
   void make_torque(const Placed<ast::Force>& torque, std::size_t body);
   void refuse_measures(const Model& model);
-  void refuse_measures(NodeId node, Span span);
+  /// What characters measure of themselves is known before each step: it may stand in what they wish.
+  void refuse_measures(NodeId node, Span span, bool may_ask_characters = false);
 
   Expressions& expressions_;
   Report& report_;

@@ -84,7 +84,9 @@ bool Joints::can_move(const JointDescription& joint, const JointText& text) {
   const std::vector<BodyDescription>& bodies = work_.made.bodies;
   if (!bodies[joint.first].fixed || (joint.second != no_body && !bodies[joint.second].fixed)) return true;
   report_.fail("E225", text.span, "a joint needs a body that can move",
-               joint.second == no_body ? fmt::format("`{}` is fixed", bodies[joint.first].name) : "both are fixed",
+               joint.second == no_body ? fmt::format("`{}` {}", bodies[joint.first].name,
+                                                     bodies[joint.first].character ? "walks" : "is fixed")
+                                       : "both are fixed",
                "leave out `fixed`, or the joint");
   return false;
 }

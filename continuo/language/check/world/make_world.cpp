@@ -34,7 +34,11 @@ void make_items(Expressions& expressions, WorldAtWork& work, const std::vector<S
             springs.add(node, scope, item.span);
           } else if constexpr (std::is_same_v<T, ast::WorldFix>) {
             for (const ast::Name& name : node.bodies) {
-              if (const auto body = body_named(name, scope, expressions)) work.made.bodies[*body].fixed = true;
+              const auto body = body_named(name, scope, expressions);
+              if (body && work.made.bodies[*body].character)
+                expressions.report.fail("E225", name.span, "a character cannot be fixed", "it walks",
+                                        "without `walk` and `jump` it stands and falls only");
+              if (body) work.made.bodies[*body].fixed = true;
             }
           }
         },

@@ -10,7 +10,7 @@
 namespace continuo::model::detail {
 
 /// What a number of the world may be.
-enum class Sort : unsigned char { any, positive, not_negative, fraction };
+enum class Sort : unsigned char { any, positive, not_negative, fraction, slope };
 
 /// Numbers that are held to their sort all at once.
 struct ToJudge {

@@ -154,6 +154,9 @@ void WorldDeclarations::declare_measures() {
          joint_measures(joint.text->kind.text, world_.dimension, joint.is_named(), joint.has_motor()))
       add_measure(joint.name + "." + member, joint.family, joint.span);
   }
+  for (const BodyText& body : world_.bodies)
+    for (const std::string& member : body.is_character() ? character_measures() : std::vector<std::string>())
+      add_measure(body.name + "." + member, body.text->name.text, body.span);
 }
 
 void WorldDeclarations::add_measure(const std::string& name, std::string_view family, Span span) {

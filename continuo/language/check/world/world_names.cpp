@@ -73,6 +73,8 @@ Value WorldNames::own_of_body(const ast::Name& name, std::size_t body, Scope& sc
   }
   if (declared_.world.dimension == 2) names.emplace_back("spin");
   names.insert(names.end(), {"radius", "mass"});
+  if (declared_.world.bodies[body].is_character())
+    for (const std::string& measure : character_measures()) names.push_back(measure);
   const std::string& owner = declared_.world.bodies[body].name;
   std::size_t without_name = 0;
   for (const JointText& joint : declared_.world.joints) {

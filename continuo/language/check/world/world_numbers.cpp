@@ -23,7 +23,8 @@ bool fits(Sort sort, double value) {
   if (!std::isfinite(value)) return false;
   if (sort == Sort::any) return true;
   if (sort == Sort::positive) return value > 0;
-  return value >= 0 && (sort != Sort::fraction || value <= 1);
+  constexpr double steepest = 1.57;  // in radians, as bodies/character.hpp has it
+  return value >= 0 && (sort != Sort::fraction || value <= 1) && (sort != Sort::slope || value < steepest);
 }
 
 std::string_view demand(Sort sort) {
@@ -34,6 +35,8 @@ std::string_view demand(Sort sort) {
       return "must not be negative";
     case Sort::fraction:
       return "goes from 0 to 1";
+    case Sort::slope:
+      return "goes from 0 to less than a right angle";
     case Sort::any:
       break;
   }

@@ -63,7 +63,7 @@ void measure_world(Expressions& expressions, WorldAtWork& work) {
       measured = force;
     } else if (base.is_measure && (member.starts_with("torque") || member == "motor_torque")) {
       measured = energy;
-    } else if (member == "angle" || member.starts_with("q_")) {
+    } else if (member == "angle" || member == "on_ground" || member.starts_with("q_")) {
       measured = pure;
     } else if (member.starts_with("spin")) {
       measured = expressions.workspace.time.per_time(pure);

@@ -58,11 +58,17 @@ std::string others(std::size_t count) {
   return count == 1 ? std::string() : fmt::format(", {} such in all", count);
 }
 
+/// Sensors and characters push nobody, but solid bodies stop characters.
+bool pass_through(const BodyDescription& a, const BodyDescription& b) {
+  const auto pushes = [](const BodyDescription& body) { return !body.traits.sensor; };
+  return (!pushes(a) && !pushes(b)) || (!pushes(a) && !a.character) || (!pushes(b) && !b.character);
+}
+
 void look_at_bodies(const WorldDescription& made, const Places& places, Report& report) {
   std::vector<Overlap> found;
   const auto meet = [&](std::size_t i, std::size_t j) {
     const BodyDescription &a = made.bodies[i], &b = made.bodies[j];
-    if (a.fixed && b.fixed) return false;
+    if ((a.is_unstoppable() && b.is_unstoppable()) || pass_through(a, b)) return false;
     const auto parts = [&](const JointDescription& joint) {
       return !joint.collide && std::minmax(joint.first, joint.second) == std::minmax(i, j);
     };
@@ -99,7 +105,7 @@ void look_at_walls(const Model& model, const WorldDescription& made, const Place
     found.clear();
     for (std::size_t i = 0; i < made.bodies.size(); ++i) {
       const double depth = places.depth_in_wall(i, normal, numbers.back() / length, wall.thin);
-      if (depth > least_depth * places.radius[i] && !made.bodies[i].fixed) found.push_back({i, i, depth});
+      if (depth > least_depth * places.radius[i] && !made.bodies[i].is_unstoppable()) found.push_back({i, i, depth});
     }
     if (found.empty()) continue;
     const BodyDescription& body = made.bodies[found.front().a];

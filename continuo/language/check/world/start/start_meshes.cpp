@@ -98,7 +98,7 @@ class MeshAtStart {
   void look_within() {
     std::vector<std::size_t> order(made_.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::erase_if(order, [&](std::size_t i) { return made_.bodies[i].fixed; });
+    std::erase_if(order, [&](std::size_t i) { return made_.bodies[i].is_unstoppable(); });
     const auto place = [&](std::size_t i) { return starts_.centre[i][0]; };
     std::ranges::sort(order, {}, place);
     double reach = 0;
@@ -135,7 +135,7 @@ class MeshAtStart {
     std::size_t work = 0;
     for (std::size_t i = 0; i < made_.bodies.size(); ++i) {
       const BodyDescription& body = made_.bodies[i];
-      if (body.fixed) continue;
+      if (body.is_unstoppable()) continue;
       work += facets_.size();
       if (work > most) return;
       Fall nearest{std::numeric_limits<double>::infinity(), true};
