@@ -263,6 +263,24 @@ TEST(Joints, APullDrawsABodyToItsTarget) {
   EXPECT_LT(length(Vector<double, 2>(world.position[0] - Vector<double, 2>{{4, 1}})), 1e-2);
 }
 
+/// Far from its target a pull has its greatest force, towards the target: s = F t^2/(2 m), whatever the direction.
+TEST(Joints, APullIsNoStrongerThanItsGreatestForce) {
+  for (const double angle : {0.0, 0.3, 0.8, 1.6, 2.5, -2.0}) {
+    World<double, 2> world;
+    const auto box = add_box<2>(world, {});
+    const Vector<double, 2> direction{{std::cos(angle), std::sin(angle)}};
+    const auto pull = join<2>(world, {.kind = JointKind::pull, .b = box, .breaks_at = 3});
+    world.find(pull)->target = direction * 500;
+    FastMotion<double, 2> motion(world);
+    for (int k = 0; k < 120; ++k) {
+      advance(motion, 1);
+      EXPECT_LT(length(Vector<double, 2>(world.find(pull)->force - direction * 3)), 1e-6) << angle;
+    }
+    const double way = 3 / world.mass[0] * 4 / 2;
+    EXPECT_LT(length(Vector<double, 2>(world.position[0] - direction * way)), 0.01 * way) << angle;
+  }
+}
+
 TEST(Joints, AFourBarLinkageKeepsTogether) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};

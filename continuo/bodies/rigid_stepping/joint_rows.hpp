@@ -246,19 +246,28 @@ void add_distance(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, con
   rows.drive(joint, distance, joint.length, along);
 }
 
+/// A pull has a row for each axis. Where its spring would take more than the greatest force, the limits of the rows are
+/// the components of that force, so that it points to the target and is as great as it may be.
 template <class Real, int Dim>
 void add_pull(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, const JointFrame<Real, Dim>& frame,
               const RigidBody<Real, Dim>& b, const Real& h) {
   constexpr std::array<JointRow, 3> kinds{JointRow::hold_0, JointRow::hold_1, JointRow::hold_2};
   const JointSpring<Real> spring = joint.spring.value_or(JointSpring<Real>{.hertz = Real(5), .damping = Real(0.7)});
+  const Softness<Real> soft = softness(spring.hertz, spring.damping, h);
+  const Vector<Real, Dim> error = b.x + frame.arm_b - joint.target;
+  const Vector<Real, Dim> wish = error * soft.rate + b.velocity_at(frame.arm_b);  // velocity to be taken away
+  const Real speed = length(wish);
   for (std::size_t i = 0; i < Dim; ++i) {
     Vector<Real, Dim> direction{};
     direction[i] = Real(1);
     auto& row = rows.along(kinds[i], direction, frame);
     row.lever_a = {};
     set_mass(row, RigidBody<Real, Dim>{}, b);
-    rows.pull(row, spring, b.x[i] + frame.arm_b[i] - joint.target[i]);
-    if (joint.breaks_at < std::numeric_limits<Real>::infinity()) row.most = joint.breaks_at * h, row.least = -row.most;
+    rows.pull(row, spring, error[i]);
+    if (!(joint.breaks_at < std::numeric_limits<Real>::infinity())) continue;
+    row.most = joint.breaks_at * h;
+    if (soft.of_mass * row.mass * speed > row.most) row.most *= std::abs(wish[i]) / speed;
+    row.least = -row.most;
   }
 }
 
