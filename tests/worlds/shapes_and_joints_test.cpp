@@ -341,5 +341,33 @@ TEST(ShapesAndJoints, OverlapsAreThoseOfTheShapes) {
   EXPECT_EQ(said("body a at (0, 2) box (2, 2)\nbody b at (1, 2) box (2, 2)\nhinge a to b at (0, 2)\n"), "");
 }
 
+// The bodies of a pattern, written one by one where the pattern puts them: the same bits, and not those without traits.
+TEST(ShapesAndJoints, PatternsHaveTheTraitsOfSingleBodies) {
+  const auto state_of = [](const std::string& bodies) {
+    const auto run = started("world { gravity (1, -9.81)\n mode fast step 1/240\n wall floor (0, 1) at 0\n" + bodies +
+                                 "body ball at (0.5, 9) radius 0.5\n}\nrun 0..1\n",
+                             fast);
+    const auto first = run->state();
+    EXPECT_TRUE(run->advance_to(1.5)) << bodies;
+    return std::pair(first, run->state());
+  };
+  for (const auto& [pattern, shape] :
+       std::vector<std::pair<std::string, std::string>>{{"grid 2 from (0, 2) spacing (3, 1)", "box (1, 1)"},
+                                                        {"stack 2 from (0, 1)", "capsule 0.5"},
+                                                        {"random 2 in (0, 1) to (4, 6)", "radius 0.4"}}) {
+    for (const std::string traits : {"driven", "sensor", "gravity_scale 0.5", "damping 0.7", "spin_damping 3",
+                                     "locked_x", "locked_y", "locked_turn"}) {
+      const std::string all = "bodies it " + pattern + " " + shape, moves = " velocity (0.3, 0.1) spin 2 ";
+      const auto [starts, end] = state_of(all + moves + traits + "\n");
+      std::string singles;
+      for (std::size_t k = 0; k < 2; ++k)
+        singles += fmt::format("body it[{}] at ({}, {}) {} {} {}\n", k + 1, starts[6 * k], starts[6 * k + 2], shape,
+                               moves, traits);
+      EXPECT_EQ(end, state_of(singles).second) << pattern << " " << traits;
+      EXPECT_NE(end, state_of(all + moves + "\n").second) << pattern << " " << traits;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuo::worlds::shapes_and_joints_test

@@ -16,10 +16,22 @@ namespace {
 using ast::Expression;
 using Word = std::string_view;
 
-constexpr std::array<Word, 26> item_words = {
-    "dimension", "gravity", "material",  "combine",   "attraction", "drag",  "mode",   "wall",  "container",
-    "body",      "bodies",  "character", "spring",    "springs",    "hinge", "slider", "weld",  "ball",
-    "distance",  "rope",    "wheel",     "universal", "gear",       "part",  "fix",    "ignore"};
+constexpr std::array<Word, 27> item_words = {
+    "dimension", "gravity", "material",  "combine",   "attraction", "drag",  "mode",   "wall", "container",
+    "body",      "bodies",  "character", "spring",    "springs",    "hinge", "slider", "weld", "ball",
+    "distance",  "rope",    "wheel",     "universal", "gear",       "pull",  "part",   "fix",  "ignore"};
+
+/// Lists one after the other.
+template <std::size_t... Sizes>
+constexpr auto joined(const std::array<Word, Sizes>&... lists) {
+  std::array<Word, (Sizes + ...)> all{};
+  std::size_t end = 0;
+  const auto append = [&](const auto& list) {
+    for (const Word word : list) all[end++] = word;
+  };
+  (append(lists), ...);
+  return all;
+}
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
@@ -32,21 +44,18 @@ constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
 constexpr std::array<Word, 7> fast_words = {"step",  "substeps",    "integrator", "threads",
                                             "hertz", "sleep_after", "sleep_speed"};
-constexpr std::array<Word, 29> body_words = {
-    "at",       "velocity",    "angle",         "axis",          "spin",         "radius",       "box",      "capsule",
-    "hull",     "rounding",    "mass",          "density",       "restitution",  "friction",     "rolling",  "group",
-    "fixed",    "driven",      "sensor",        "gravity_scale", "damping",      "spin_damping", "locked_x", "locked_y",
-    "locked_z", "locked_turn", "locked_turn_x", "locked_turn_y", "locked_turn_z"};
+// What bodies have, alone and in patterns.
+constexpr std::array<Word, 23> matter_words = {
+    "velocity",     "angle",    "axis",     "spin",     "radius",      "mass",          "density",       "restitution",
+    "friction",     "rolling",  "group",    "fixed",    "driven",      "sensor",        "gravity_scale", "damping",
+    "spin_damping", "locked_x", "locked_y", "locked_z", "locked_turn", "locked_turn_x", "locked_turn_y"};
+constexpr auto body_words = joined(std::array<Word, 5>{"at", "box", "capsule", "hull", "rounding"}, matter_words);
+constexpr auto grid_words =
+    joined(std::array<Word, 7>{"from", "spacing", "jitter", "seed", "box", "capsule", "rounding"}, matter_words);
+constexpr auto random_words = joined(std::array<Word, 2>{"speed", "seed"}, matter_words);
+constexpr auto stack_words = joined(std::array<Word, 4>{"from", "box", "capsule", "rounding"}, matter_words);
 constexpr std::array<Word, 8> character_words = {"at", "radius", "height", "steepest", "step", "walk", "jump", "group"};
 constexpr std::array<Word, 8> part_words = {"at", "axis", "angle", "radius", "box", "capsule", "hull", "rounding"};
-constexpr std::array<Word, 19> grid_words = {
-    "from",     "spacing", "jitter", "seed",    "velocity", "angle", "spin",        "radius",   "box",    "capsule",
-    "rounding", "axis",    "mass",   "density", "group",    "fixed", "restitution", "friction", "rolling"};
-constexpr std::array<Word, 13> random_words = {"radius",  "speed", "seed",  "velocity",    "angle",    "spin",   "mass",
-                                               "density", "group", "fixed", "restitution", "friction", "rolling"};
-constexpr std::array<Word, 15> stack_words = {"from",  "radius",  "box",         "capsule",  "rounding",
-                                              "mass",  "density", "velocity",    "angle",    "spin",
-                                              "group", "fixed",   "restitution", "friction", "rolling"};
 constexpr std::array<Word, 3> spring_words = {"stiffness", "length", "damping"};
 constexpr std::array<Word, 4> springs_words = {"stiffness", "length", "damping", "diagonal"};
 

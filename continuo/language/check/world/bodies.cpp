@@ -119,6 +119,7 @@ void Bodies::make_pattern(const PatternText& pattern) {
   const ast::WorldAttributes& attributes = pattern.text->attributes;
   const MadeShape shape = shapes_.make(attributes, scope);
   BodyDescription shared = description_of(attributes, shape, scope);
+  shared.traits = traits_of(attributes, scope);
   shared.span = pattern.span;
   for (std::size_t k = 0; k < pattern.count; ++k) {
     BodyDescription& body = work_.made.bodies[pattern.first + k];

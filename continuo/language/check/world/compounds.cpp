@@ -1,5 +1,5 @@
 // continuo/language/check/world/compounds.cpp
-// Bodies of several parts, and the traits that few bodies have: members of Bodies.
+// Bodies of several parts, and traits: members of Bodies.
 #include <algorithm>
 #include <array>
 #include <string_view>
