@@ -136,7 +136,8 @@ struct JointDescription {
   NodeId hertz, damping, rest;            // of a spring; not valid: none
   NodeId motor_speed, motor_most;         // not valid: none; the speed may depend on everything
   NodeId ratio;                           // of a gear
-  NodeId breaks_at, breaks_at_torque;     // not valid: never
+  NodePoint target{};                     // of a pull: where it draws the first body to; it may depend on everything
+  NodeId breaks_at, breaks_at_torque;     // not valid: never; of a pull the greatest force
   bool collide = false;                   // the two bodies with each other
   bool is_named = false;                  // only then has it a measure of its coordinate
   std::size_t first_measure = no_body;    // of `joint_measures` in Model::states; no_body: none

@@ -14,6 +14,7 @@ namespace {
 std::string_view unknown_of(const JointDescription& joint, int dimension) {
   if (joint.kind == "gear" && dimension == 3) return "gears in space";
   if (joint.kind == "rope" || joint.lower.valid()) return "limits of joints";
+  if (joint.kind == "pull") return "joints that pull";
   if (joint.hertz.valid()) return "springs of joints";
   if (joint.breaks_at.valid() || joint.breaks_at_torque.valid()) return "joints that break";
   return {};

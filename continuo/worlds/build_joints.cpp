@@ -20,6 +20,7 @@ JointKind kind_of(std::string_view word) {
   if (word == "wheel") return JointKind::wheel;
   if (word == "universal") return JointKind::universal;
   if (word == "gear") return JointKind::gear;
+  if (word == "pull") return JointKind::pull;
   return JointKind::hinge;
 }
 

@@ -55,7 +55,7 @@ void write_joints(const World<double, Dim>& world, std::span<const JointHandle> 
   }
 }
 
-MotorSpeeds::MotorSpeeds(const model::ModelProgram& program, std::span<const double> variables) {
+JointDrives::JointDrives(const model::ModelProgram& program, std::span<const double> variables) {
   const model::Model& model = program.model;
   std::vector<model::NodeId> nodes;
   for (std::size_t k = 0; k < model.world->joints.size(); ++k) {
@@ -68,8 +68,14 @@ MotorSpeeds::MotorSpeeds(const model::ModelProgram& program, std::span<const dou
     motors_.push_back(k);
     nodes.push_back(speed);
   }
+  for (std::size_t k = 0; k < model.world->joints.size(); ++k) {
+    const model::JointDescription& joint = model.world->joints[k];
+    if (joint.kind != "pull") continue;
+    pulls_.push_back(k);
+    nodes.insert(nodes.end(), joint.target.begin(), joint.target.begin() + model.world->dimension);
+  }
   if (!nodes.empty()) evaluation_ = model::Evaluation(program.tape_of(nodes), variables);
-  speeds_.resize(nodes.size());
+  values_.resize(nodes.size());
 }
 
 template double coordinate_of(const World<double, 2>&, const Joint<double, 2>&);

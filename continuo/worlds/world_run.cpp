@@ -49,7 +49,7 @@ class Moving final : public WorldRun {
         options_(std::move(options)),
         variables_(variables.begin(), variables.end()),
         coupled_(*program_, variables),
-        motors_(*program_, variables),
+        drives_(*program_, variables),
         characters_(*program_, variables),
         start_(variables[model::Layout::time]) {
     const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
@@ -344,7 +344,7 @@ class Moving final : public WorldRun {
   }
   void set_everywhere(std::uint32_t variable, double value) {
     coupled_.set(variable, value);
-    if (!motors_.is_empty()) motors_.set(variable, value);
+    if (!drives_.is_empty()) drives_.set(variable, value);
     characters_.set(variable, value);
   }
 
@@ -418,7 +418,8 @@ class Moving final : public WorldRun {
   Status fast_step() {
     const double from = world_.time;
     if (Status status = move_equations(from, from + options_.step / 2); !status) return status;
-    if (!motors_.is_empty()) motors_.drive(from, state(), joints_, world_);
+    if (!drives_.is_empty())
+      if (Status status = drives_.drive(from, state(), joints_, world_); !status) return status;
     if (!characters_.is_empty()) characters_.prepare(from, state(), world_);
     if (Status status = fast_->advance(); !status) return status;
     if (!characters_.is_empty())
@@ -473,7 +474,7 @@ class Moving final : public WorldRun {
   std::vector<double> variables_;
   std::vector<std::uint32_t> set_;  // parameters that were set
   CoupledEquations<Dim> coupled_;
-  MotorSpeeds motors_;
+  JointDrives drives_;
   Characters<Dim> characters_;
   World<double, Dim> world_;
   static constexpr double hertz_of_hand = 5;

@@ -369,5 +369,61 @@ TEST(ShapesAndJoints, PatternsHaveTheTraitsOfSingleBodies) {
   }
 }
 
+// Far away a pull has its greatest force: s = F t^2/(2 m). Near its target it is a damped oscillator of its frequency;
+// its force is what it writes down, F = m a, against gravity where it hangs.
+TEST(ShapesAndJoints, APullDrawsABodyToItsTarget) {
+  const model::Run far = run_of(
+      "world { mode fast step 1/480\n body crate at (0, 0) [m] box (1, 1) mass 4\n"
+      " pull hand: crate to (300, 400) spring 2 [Hz] force at most 10 [N] }\nrun 0..2 [s]\n"
+      "check crate.x at end = 0.6*10/4*2^2/2 [m] within 0.01 [m]\ncheck crate.y at end = 0.8*10/4*2^2/2 [m] within "
+      "0.01 [m]\n"
+      "check hypot(hand.force_x, hand.force_y) at end = 10 [N] within 1e-6 [N]\n");
+  EXPECT_EQ(failed_checks(far), "");
+  const model::Run near = run_of(
+      "world { mode fast step 1/2000\n body crate at (0, 0) box (1, 1) mass 4\n"
+      " pull hand: crate to (1, 0) spring 0.5 damping 0.1 }\nrun 0..3\n"
+      "let w = pi, d = 0.1*pi, f = pi*sqrt(0.99)\n"
+      "check crate.x at 1 = 1 - exp(-d)*(cos(f) + d/f*sin(f)) within 0.01\n"
+      "check crate.x at 2.5 = 1 - exp(-2.5*d)*(cos(2.5*f) + d/f*sin(2.5*f)) within 0.02\n");
+  EXPECT_EQ(failed_checks(near), "");
+  const model::Run hanging = run_of(
+      "world { dimension 3\n gravity (0, 0, -10)\n mode fast step 1/240\n body crate at (0, 0, 0) box (1, 1, 1) mass "
+      "4\n"
+      " pull hand: crate to (0, 0, 1) at (0, 0, 0.5) spring 2 }\nrun 0..3\n"
+      "check hand.force_z at end = 40 within 0.01\n"
+      "check crate.z at end = 0.5 - 10/(4*pi)^2 within 0.002\n");
+  EXPECT_EQ(failed_checks(hanging), "");
+}
+
+// The target is any expression: of time, of an equation beside the bodies, of another body, and of an input; a corner
+// that is drawn is where it is drawn to.
+TEST(ShapesAndJoints, ThePullsTargetIsAnyExpression) {
+  const std::string text =
+      "input side = 1 in -9..9\nworld { mode fast step 1/480\n body crate at (0, 0) box (1, 1)\n"
+      " body other at (0, 5) box (1, 1)\n body guide at (9, 9) velocity (1, 0) box (1, 1)\n"
+      " pull hand: crate to (2*sin(t), y) at (0.5, 0.5) spring 20\n pull other to (side, guide.x) spring 5 }\n"
+      "y' = 0.1*t\ny(0) = 0\nrun 0..4\n";
+  const auto run = started(text, fast);
+  ASSERT_TRUE(run->set(program_of(text)->model.inputs[0].variable, 3));
+  ASSERT_TRUE(run->advance_to(4));
+  const double angle = run->state()[4], c = std::cos(angle), s = std::sin(angle);
+  EXPECT_NEAR(run->position(0)[0] + 0.5 * (c - s), 2 * std::sin(4.0), 0.03);
+  EXPECT_NEAR(run->position(0)[1] + 0.5 * (s + c), 0.8, 0.03);
+  EXPECT_NEAR(run->position(1)[0], 3, 1e-3);
+  EXPECT_NEAR(run->position(1)[1], 13, 0.1);
+  const auto again = started(text, fast);
+  ASSERT_TRUE(again->restore(run->snapshot()));
+  ASSERT_TRUE(run->advance_to(5));
+  ASSERT_TRUE(again->advance_to(5));
+  EXPECT_EQ(run->state(), again->state());
+  const auto lost = started(
+      "world { mode fast step 1/60\n body crate at (0, 0) box (1, 1)\n pull crate to (sqrt(1 - t), 0) spring 1 }\n"
+      "run 0..4\n",
+      fast);
+  const Status status = lost->advance_to(4);
+  EXPECT_THAT(status.message, testing::HasSubstr("the target of a pull, is no number"));
+  EXPECT_NEAR(lost->time(), 1, 0.05);
+}
+
 }  // namespace
 }  // namespace continuo::worlds::shapes_and_joints_test

@@ -61,7 +61,7 @@ void translate(const Declarations& declared, Expressions& expressions, WorldAtWo
   store(InitialValues(expressions, model.states).make(), model);   // starts of states, or a boundary problem
   store(Equations(expressions, model).solve(), model, workspace);  // derivatives in each mode
   store(pair_up(model), model);                                    // positions with their velocities
-  Joints(expressions, world, model.states).make_motors();          // of the world
+  Joints(expressions, world, model.states).make_drives();          // of the world
   Characters(expressions, world).make_wishes();                    //
   Forces(expressions, world).make(model);                          //
   store(make_quantities(expressions), model);                      // lets, outputs, energies

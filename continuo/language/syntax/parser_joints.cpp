@@ -29,6 +29,7 @@ constexpr std::array<Word, 7> distance_words = {"ends", "limits", "spring", "dam
 constexpr std::array<Word, 4> rope_words = {"ends", "length", "breaks_at", "collide"};
 constexpr std::array<Word, 6> universal_words = {"at", "axis", "axle", "breaks_at", "breaks_at_torque", "collide"};
 constexpr std::array<Word, 5> gear_words = {"axis", "axle", "ratio", "breaks_at_torque", "collide"};
+constexpr std::array<Word, 4> pull_words = {"at", "spring", "damping", "force"};
 
 std::span<const Word> words_of(Word kind) {
   if (kind == "hinge") return hinge_words;
@@ -39,6 +40,7 @@ std::span<const Word> words_of(Word kind) {
   if (kind == "distance") return distance_words;
   if (kind == "rope") return rope_words;
   if (kind == "universal") return universal_words;
+  if (kind == "pull") return pull_words;
   return gear_words;
 }
 

@@ -23,7 +23,7 @@ inline constexpr std::array<std::string_view, 5> combinations{"average", "minimu
                                                               "geometric_mean"};
 
 /// `hinge door to frame`: the kinds of joints, by the words that begin them. A rope is a distance with an upper limit.
-inline constexpr std::array<std::string_view, 9> joint_kinds{"hinge", "slider", "weld",      "ball", "distance",
-                                                             "rope",  "wheel",  "universal", "gear"};
+inline constexpr std::array<std::string_view, 10> joint_kinds{"hinge", "slider", "weld",      "ball", "distance",
+                                                              "rope",  "wheel",  "universal", "gear", "pull"};
 
 }  // namespace continuo::model

@@ -52,7 +52,8 @@ void Forces::refuse_measures(const Model& model) {
         if (component.valid()) refuse_measures(component, load.span);
   }
   for (const JointDescription& joint : work_.made.joints)
-    if (joint.motor_speed.valid()) refuse_measures(joint.motor_speed, joint.span);
+    for (const NodeId drive : {joint.motor_speed, joint.target[0], joint.target[1], joint.target[2]})
+      if (drive.valid()) refuse_measures(drive, joint.span);
   for (const CharacterDescription& character : work_.made.characters)
     for (const NodeId wish : {character.walk[0], character.walk[1], character.jump})
       if (wish.valid()) refuse_measures(wish, character.span, true);

@@ -35,7 +35,7 @@ void Joints::make() {
     read_axes(*joint, text, scope);
     read_limits(*joint, text, scope);
     read_spring(*joint, text, scope);
-    read_motor(*joint, text, scope);
+    joint->kind == "pull" ? read_pull(*joint, text, scope) : read_motor(*joint, text, scope);
     read_strength(*joint, text, scope);
     joint->collide = given(text, "collide") != nullptr;
     work_.made.joints.push_back(std::move(*joint));
@@ -59,7 +59,13 @@ std::optional<JointDescription> Joints::connected(const JointText& text, Scope& 
   }
   if (!first) return std::nullopt;
   made.first = *first;
-  if (std::holds_alternative<ast::Expression>(joint.second) && !is_distance(made.kind)) {
+  if (made.kind == "pull" && !std::holds_alternative<ast::Expression>(joint.second)) {
+    report_.fail("E225", text.span, "a pull draws a body to a point", {},
+                 fmt::format("write pull {} to {} spring 2 [Hz]; two bodies are drawn together by a spring",
+                             report_.slice(joint.first.span), text_.dimension == 2 ? "(x, y)" : "(x, y, z)"));
+    return std::nullopt;
+  }
+  if (std::holds_alternative<ast::Expression>(joint.second) && !is_distance(made.kind) && made.kind != "pull") {
     report_.fail("E225", std::get<ast::Expression>(joint.second).span,
                  fmt::format("a {} connects two bodies, or a body and the world", made.kind), "this is a point",
                  fmt::format("write {} {} at {}", made.kind, report_.slice(joint.first.span),
@@ -254,13 +260,24 @@ void Joints::read_motor(JointDescription& joint, const JointText& text, Scope& s
   joint.motor_speed = graph_.constant(0);
 }
 
-void Joints::make_motors() {
+/// Its greatest force; its spring is that of all joints.
+void Joints::read_pull(JointDescription& joint, const JointText& text, Scope& scope) {
+  if (!given(text, "spring"))
+    report_.fail("E225", text.span, "how strong is this pull?", {}, "add spring 2 [Hz]: its frequency");
+  if (const ast::Expression* most = given(text, "force"))
+    joint.breaks_at = numbers_.number(*most, scope, force(), "the greatest force of a pull", Sort::not_negative);
+}
+
+void Joints::make_drives() {
   for (std::size_t k = 0; k < work_.made.joints.size(); ++k) {
     JointDescription& joint = work_.made.joints[k];
     const JointText& text = text_.joints[work_.joint_texts[k]];
+    Scope scope = text.scope;
+    if (joint.kind == "pull")
+      joint.target = numbers_.point(std::get<ast::Expression>(text.text->second), scope, work_.length,
+                                    "the target of a pull", false);
     const ast::Expression* motor = given(text, "motor");
     if (!motor || !joint.motor_speed.valid()) continue;
-    Scope scope = text.scope;
     const Value speed = expressions_.values.number_of(*motor, scope);
     const Measured moved = joint.kind == "slider" ? work_.length : pure();
     if (!speed.bad)

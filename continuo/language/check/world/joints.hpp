@@ -24,8 +24,8 @@ class Joints {
 
   /// After the bodies, and what fixes them.
   void make();
-  /// After the equations: they may stand in the speeds of motors.
-  void make_motors();
+  /// After the equations: they may stand in the speeds of motors, and in the targets of pulls.
+  void make_drives();
 
  private:
   [[nodiscard]] std::optional<JointDescription> connected(const JointText& text, Scope& scope);
@@ -36,6 +36,7 @@ class Joints {
   void read_limits(JointDescription& joint, const JointText& text, Scope& scope);
   void read_spring(JointDescription& joint, const JointText& text, Scope& scope);
   void read_motor(JointDescription& joint, const JointText& text, Scope& scope);
+  void read_pull(JointDescription& joint, const JointText& text, Scope& scope);
   void read_strength(JointDescription& joint, const JointText& text, Scope& scope);
   [[nodiscard]] NodePoint start_of(std::size_t body) const;
   [[nodiscard]] Measured pure() const;
