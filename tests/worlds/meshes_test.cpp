@@ -1,4 +1,5 @@
 // Meshes and chains in the language: held against closed forms, walls, and the same world built by hand.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/language/load.hpp>
 #include <continuo/status/require.hpp>
@@ -115,6 +117,132 @@ TEST_F(Meshes, ABoxOnTwoTrianglesSlidesAsOnAWall) {
   EXPECT_NEAR(on_mesh->position(0)[0], -1 + 9.0 / 2 / 5, 5e-3);  // v^2/(2 mu g), mu = 0.5
   ASSERT_EQ(on_mesh->meshes().size(), 1U);
   EXPECT_EQ(on_mesh->meshes()[0].facets.size(), 2U);
+}
+
+/// The corners of each facet of a mesh, one after the other.
+std::vector<double> corners_of(const StaticMesh<double, 3>& mesh) {
+  std::vector<double> all;
+  for (std::uint32_t facet = 0; facet < mesh.size(); ++facet)
+    for (const std::uint32_t number : mesh.numbers(facet))
+      for (const double component : mesh.corner(number).components) all.push_back(component);
+  return all;
+}
+std::vector<double> corners_of(const model::Model& model) {
+  const auto built = build_world<3>(model, start_values(model));
+  EXPECT_TRUE(built.status) << built.status.message;
+  return corners_of(*built.world.meshes()[0].geometry);
+}
+
+// The facets of a HeightField of shapes/, in its order: from an expression, and from a file with its lines shuffled,
+// whose heights are in centimetres.
+TEST_F(Meshes, HeightsAreTheTrianglesOfAHeightField) {
+  std::mt19937_64 random(4);
+  for (const auto& [width, depth] : {std::pair(2, 2), {5, 3}, {3, 7}, {9, 8}}) {
+    HeightField<double, 3> field{.origin = {{-4, 1.5, 0}},
+                                 .spacing = {0.5, 1.25},
+                                 .counts = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(depth)}};
+    std::vector<std::string> lines;
+    for (int j = 0; j < depth; ++j)
+      for (int i = 0; i < width; ++i) {
+        field.heights.push_back((i + 2) * 0.25 - j * j * 0.125);
+        lines.push_back(fmt::format("{},{},{}\n", field.origin[0] + 0.5 * i, field.origin[1] + 1.25 * j,
+                                    100 * field.heights.back()));
+      }
+    World<double, 3> world;
+    require(world.add_mesh({.shape = field}));
+    const std::vector<double> expected = corners_of(*world.meshes()[0].geometry);
+    std::ranges::shuffle(lines, random);
+    std::string file = "x,y,z [cm]\n";
+    for (const std::string& line : lines) file += line;
+    write("hills.csv", file);
+    const std::string end = "\n body ball at (0, 0, 99) [m] }\nrun 0..1 [s]\n";
+    for (const std::string& heights :
+         {fmt::format("for i in 2..{}, j in 0..{} {{ i*0.25 - j^2*0.125 }} from (-4, 1.5) spacing (0.5, 1.25)",
+                      width + 1, depth - 1),
+          std::string("\"hills.csv\"")}) {
+      const auto of = program("world { dimension 3\n mode fast step 1/60\n wall hills heights " + heights + end);
+      EXPECT_EQ(corners_of(of->model), expected) << heights << " " << width;
+    }
+  }
+}
+
+// Placed as a mesh: scaled, turned about the vertical by a right angle, and moved; parameters move them in a run.
+TEST_F(Meshes, HeightsFollowTheirParameters) {
+  const auto text = [](const std::string& more) {
+    return "param steep = 0.5, apart = 1\nworld { dimension 3\n gravity (0, 0, -10)\n mode fast step 1/60\n"
+           " wall slope heights for i in 0..2, j in 0..1 { steep*i*apart } spacing (apart, 2) " +
+           more + "\n body ball at (1, 1, 9) }\nrun 0..1\n";
+  };
+  const auto plain = run(text("")), placed = run(text("at (1, 2, 3) axis (0, 0, 1) angle 90 [deg] scale 2"));
+  const auto before = plain->meshes()[0].corners, after = placed->meshes()[0].corners;
+  ASSERT_EQ(before.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(after[i][0], 1 - 2 * before[i][1], 1e-14);
+    EXPECT_NEAR(after[i][1], 2 + 2 * before[i][0], 1e-14);
+    EXPECT_NEAR(after[i][2], 3 + 2 * before[i][2], 1e-14);
+  }
+  ASSERT_TRUE(plain->set(program(text(""))->model.parameters[1].variable, 3));
+  EXPECT_EQ(plain->meshes()[0].corners[5], (Point{6, 2, 3}));
+}
+
+// A crate on a slope without friction: its acceleration is that of an inclined plane, on rows of triangles.
+TEST_F(Meshes, ABoxSlidesDownHeightsAsDownAPlane) {
+  const auto down =
+      run("world { dimension 3\n gravity (0, 0, -10)\n mode fast step 1/480\n material friction 0 restitution 0\n"
+          " wall slope heights for i in 0..40, j in 0..20 { -0.75*i/4 } from (-5, -2.5) spacing (0.25, 0.25)\n"
+          " body crate at (-3.7, 0.1, -0.575) box (0.5, 0.5, 0.5) axis (0, 1, 0) angle atan(0.75) }\nrun 0..1\n");
+  ASSERT_TRUE(down->advance_to(1));
+  const Point v = down->velocity(0);
+  EXPECT_NEAR(v[0], 10 * 0.6 * 0.8, 0.02);
+  EXPECT_NEAR(v[2], -10 * 0.6 * 0.6, 0.02);
+  EXPECT_NEAR(v[1], 0, 1e-3);
+}
+
+TEST_F(Meshes, WrongHeightsAreSaidWithTheirPlace) {
+  const auto said = [&](const std::string& heights, const std::string& dimension = "3") {
+    const model::Loaded loaded = model::load(
+        model::Source((folder / "scene.sim").string(),
+                      "world { dimension " + dimension + "\n mode fast step 1/60\n wall hills heights " + heights +
+                          "\n body ball at " + (dimension == "3" ? "(0, 0, 9)" : "(0, 9)") + " [m] }\nrun 0..1 [s]\n"));
+    EXPECT_FALSE(loaded);
+    return loaded.text();
+  };
+  const auto of_file = [&](const std::string& text) {
+    write("hills.csv", text);
+    return said("\"hills.csv\"");
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0,1\n0,1,1\n"), HasSubstr("it has no point at x = 1, y = 1"));
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0,1\n0,1,1\n1,1,0\n0,1,2\n"), HasSubstr("it has two points at x = 0, y = 1"));
+  EXPECT_THAT(
+      of_file("x,y,z\n0,0,1\n1,0,1\n3,0,1\n0,1,1\n1,1,0\n3,1,2\n"),
+      HasSubstr("the x of its points are not evenly apart: 0 and 1 follow each other, and on average they are 1.5 "
+                "apart"));
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0,1\n"), HasSubstr("all 2 points have y = 0"));
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0,high\n"), HasSubstr("hills.csv:3"));
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0\n"), HasSubstr("hills.csv:3"));
+  EXPECT_THAT(of_file("x,y,z\n0,0,1\n1,0,nan\n"), HasSubstr("hills.csv:3"));
+  EXPECT_THAT(of_file("x,y\n0,0\n"), HasSubstr("no column `z`"));
+  EXPECT_THAT(of_file("1\n2\n"), HasSubstr("`x`, `y`, `z`"));
+  EXPECT_THAT(of_file(""), HasSubstr("E272"));
+  EXPECT_THAT(of_file("x,y,z [s]\n0,0,1\n"), HasSubstr("the column `z` is in s, a length is m"));
+  EXPECT_THAT(of_file("x,y,z\n-1e308,0,1\n1e308,0,1\n0,1,1\n"), HasSubstr("E272"));
+  std::string line = "x,y,z\n";
+  for (int i = 0; i < 1100; ++i) line += fmt::format("{},{},0\n", i, i);
+  EXPECT_THAT(of_file(line), HasSubstr("a grid of 1100 x 1100 points has more than 1000000 triangles"));
+  EXPECT_THAT(said("\"nowhere.csv\""), HasSubstr("E270"));
+  EXPECT_THAT(said("\"hills.csv\" from (0, 0)"), HasSubstr("leave `from` out"));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { i*j }"), HasSubstr("add spacing (1, 1)"));
+  EXPECT_THAT(said("for i in 0..0, j in 0..4 { i*j } spacing (1, 1)"), HasSubstr("here is 1"));
+  EXPECT_THAT(said("for i in 4..0, j in 0..4 { i*j } spacing (1, 1)"), HasSubstr("error["));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { i*j } spacing (1, 0)"), HasSubstr("must be greater than 0"));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { i*j } spacing 1"), HasSubstr("expected a point"));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { i*j*t } spacing (1, 1)"), HasSubstr("scene.sim:3:"));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { 1/(i - 2) } spacing (1, 1)"), HasSubstr("must be a finite number"));
+  EXPECT_THAT(said("for i in 0..4 { i } spacing (1, 1)"), HasSubstr("a second index"));
+  EXPECT_THAT(said("for i in 0..4, j in 0..4 { i*k } spacing (1, 1)"), HasSubstr("there is no `k`"));
+  EXPECT_THAT(said("for i in 0..3000, j in 0..3000 { i*j } spacing (1, 1)"), HasSubstr("error["));
+  EXPECT_THAT(said("\"hills.csv\"", "2"), HasSubstr("heights over a grid are ground of space"));
 }
 
 // `at`, `axis`, `angle` and `scale` place a mesh: the corners are those of the formula a + s R c.

@@ -38,13 +38,15 @@ struct WorldWall {
 };
 
 /// `wall hills mesh "terrain.obj" at (0, 0, 1) scale 2`, `wall track chain (0, 0) (4, 0) (6, 1) friction 0.8`,
-/// `wall track chain from "profile.csv"`, `wall track chain for k in 0..9 { (k, h[k]) }`: a surface of triangles or
-/// segments that never moves.
+/// `wall track chain from "profile.csv"`, `wall track chain for k in 0..9 { (k, h[k]) }`, `wall hills heights
+/// "hills.csv"`, `wall hills heights for i in 0..9, j in 0..9 { sin(i)*sin(j) } from (0, 0) spacing (1, 1)`: a surface
+/// of triangles or segments that never moves.
 struct WorldMesh {
   std::optional<Identifier> name;
-  Identifier kind;                                     // `mesh` or `chain`
-  std::optional<std::pair<Identifier, Range>> family;  // for each index of this range a chain goes on with its points
-  Expression corners;                                  // a Text: the name of a file; or of a chain a List of points
+  Identifier kind;                                     // `mesh`, `chain` or `heights`
+  std::vector<std::pair<Identifier, Range>> families;  // for each index of this range a chain goes on with its points,
+                                                       // for each two of these ranges there is a height
+  Expression corners;  // a Text: the name of a file; of a chain a List of points, or of heights a number
   WorldAttributes attributes;
 };
 

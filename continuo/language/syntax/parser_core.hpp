@@ -237,10 +237,14 @@ class Parser {
   [[nodiscard]] ast::WorldItem parse_world_item();
   [[nodiscard]] ast::WorldBody parse_world_body(bool is_character);
   [[nodiscard]] ast::WorldSetting parse_world_setting(ast::Identifier word);
-  /// A half-space, a mesh or a chain.
+  /// A half-space, a mesh, heights or a chain.
   [[nodiscard]] decltype(ast::WorldItem::node) parse_world_wall();
   [[nodiscard]] ast::WorldWall parse_half_space(std::optional<ast::Identifier> name, ast::Expression normal);
   [[nodiscard]] ast::WorldMesh parse_world_mesh(std::optional<ast::Identifier> name);
+  [[nodiscard]] ast::WorldMesh parse_heights(std::optional<ast::Identifier> name);
+  template <class Parse>
+  [[nodiscard]] ast::Expression parse_for_each(const std::vector<std::pair<ast::Identifier, ast::Range>>& families,
+                                               std::string_view what, Parse&& parse);
   [[nodiscard]] ast::WorldMesh parse_chain(std::optional<ast::Identifier> name, ast::Identifier kind,
                                            std::optional<ast::Expression> first = std::nullopt);
   [[nodiscard]] ast::WorldContainer parse_world_container();

@@ -39,6 +39,7 @@ constexpr std::array<Word, 8> mesh_words = {"at",          "angle",    "axis",  
                                             "restitution", "friction", "rolling", "thin"};
 constexpr std::array<Word, 8> chain_words = {"at",          "angle",    "scale",   "closed",
                                              "restitution", "friction", "rolling", "thin"};
+constexpr auto heights_words = joined(mesh_words, std::array<Word, 2>{"from", "spacing"});
 constexpr std::array<Word, 2> attraction_words = {"softening", "opening"};
 constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
@@ -233,9 +234,11 @@ decltype(ast::WorldItem::node) Parser::parse_world_wall() {
   const Token& next = look(1);
   const bool is_word = next.kind == TokenKind::name && (spelled(next) == "from" || spelled(next) == "for");
   const bool has_no_name = (at_word("mesh") && next.kind == TokenKind::text) ||
+                           (at_word("heights") && (next.kind == TokenKind::text || is_word)) ||
                            (at_word("chain") && (next.kind == TokenKind::open_round || is_word));
   std::optional<ast::Identifier> name = has_no_name ? std::nullopt : parse_name_of_wall();
   if (at_word("mesh")) return parse_world_mesh(std::move(name));
+  if (at_word("heights")) return parse_heights(std::move(name));
   if (!at_word("chain")) return parse_half_space(std::move(name), parse_point());
   ast::Identifier kind = parse_identifier("`chain`");
   if (!at(TokenKind::open_round)) return parse_chain(std::move(name), std::move(kind));
@@ -265,6 +268,38 @@ ast::WorldMesh Parser::parse_world_mesh(std::optional<ast::Identifier> name) {
   return mesh;
 }
 
+/// What stands in braces behind `for` and these indices.
+template <class Parse>
+Expression Parser::parse_for_each(const std::vector<std::pair<ast::Identifier, ast::Range>>& families, Word what,
+                                  Parse&& parse) {
+  expect(TokenKind::open_brace, fmt::format("`{{` and {}", what));
+  for (const auto& [index, range] : families) indices_.push_back(index.text);
+  accept(TokenKind::line_end);
+  Expression made = parse();
+  for (std::size_t k = 0; k < families.size(); ++k) indices_.pop_back();
+  accept(TokenKind::line_end);
+  expect(TokenKind::close_brace, "`}`");
+  return made;
+}
+
+ast::WorldMesh Parser::parse_heights(std::optional<ast::Identifier> name) {
+  ast::WorldMesh heights;
+  heights.name = std::move(name);
+  heights.kind = parse_identifier("`heights`");
+  const Span span = current().span;
+  if (accept_word("for")) {
+    heights.families.push_back(parse_index());
+    expect(TokenKind::comma, "`,` and a second index, as in for i in 0..9, j in 0..9 { sin(i)*sin(j) }");
+    heights.families.push_back(parse_index());
+    heights.corners = parse_for_each(heights.families, "the height for each, as in { sin(i)*sin(j) }",
+                                     [&] { return parse_tree(Level::additive).expression; });
+  } else {
+    heights.corners = {ast::Text{parse_text("the name of a file, as in heights \"hills.csv\", or `for`")}, span};
+  }
+  heights.attributes = parse_world_attributes("a field of heights", heights_words);
+  return heights;
+}
+
 /// Behind `chain` and, where it begins with a point, behind that.
 ast::WorldMesh Parser::parse_chain(std::optional<ast::Identifier> name, ast::Identifier kind,
                                    std::optional<Expression> first) {
@@ -276,14 +311,9 @@ ast::WorldMesh Parser::parse_chain(std::optional<ast::Identifier> name, ast::Ide
     const Span span = current().span;
     chain.corners = {ast::Text{parse_text("the name of a file, as in chain from \"hills.csv\"")}, span};
   } else if (!first && accept_word("for")) {
-    chain.family = parse_index();
-    expect(TokenKind::open_brace, "`{` and the points for each, as in for k in 0..9 { (k, h[k]) }");
-    indices_.push_back(chain.family->first.text);
-    accept(TokenKind::line_end);
-    chain.corners = parse_points("as in for k in 0..9 { (k, h[k]) }");
-    indices_.pop_back();
-    accept(TokenKind::line_end);
-    expect(TokenKind::close_brace, "a further point, or `}`");
+    chain.families.push_back(parse_index());
+    chain.corners = parse_for_each(chain.families, "the points for each, as in for k in 0..9 { (k, h[k]) }",
+                                   [&] { return parse_points("as in for k in 0..9 { (k, h[k]) }"); });
   } else {
     chain.corners = parse_points(example, std::move(first));
   }

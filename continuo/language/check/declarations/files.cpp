@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <continuo/language/check/declarations/files.hpp>
 #include <continuo/language/check/declarations/folder_file.hpp>
@@ -70,6 +71,26 @@ std::optional<NamedColumn> column_in(std::string_view text, const std::string& n
   return std::nullopt;
 }
 
+/// Columns of one table, each by its name, which is needed: only where there is one column a table does without.
+template <std::size_t Count>
+std::optional<std::array<NamedColumn, Count>> columns_of(const std::string& file, Span span,
+                                                         const std::array<std::string, Count>& names, Report& report) {
+  const auto text = text_of(file, span, report);
+  if (!text) return std::nullopt;
+  if (parse_column(*text, file, {})) {
+    report.fail("E272", span, "this file is no table of points", "it has one column",
+                fmt::format("its first line names the columns `{}`", fmt::join(names, "`, `")));
+    return std::nullopt;
+  }
+  std::array<NamedColumn, Count> columns;
+  for (std::size_t k = 0; k < Count; ++k) {
+    auto column = column_in(*text, file, span, names[k], report);
+    if (!column) return std::nullopt;
+    columns[k] = *std::move(column);
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::string file_of(const std::string& name, Span span, Report& report) {
@@ -105,18 +126,11 @@ std::optional<NamedColumn> column_of(const std::string& name, Span span, const s
 }
 
 std::optional<std::array<NamedColumn, 2>> points_of_chain(const std::string& name, Span span, Report& report) {
-  const auto text = text_of(name, span, report);
-  if (!text) return std::nullopt;
-  if (parse_column(*text, name, {})) {  // only where there is one column it needs no name
-    report.fail("E272", span, "this file is no table of points", "it has one column",
-                "its first line names the columns `x` and `y`");
-    return std::nullopt;
-  }
-  auto x = column_in(*text, name, span, "x", report);
-  if (!x) return std::nullopt;
-  auto y = column_in(*text, name, span, "y", report);
-  if (!y) return std::nullopt;
-  return std::array{*std::move(x), *std::move(y)};
+  return columns_of<2>(name, span, {"x", "y"}, report);
+}
+
+std::optional<std::array<NamedColumn, 3>> points_of_heights(const std::string& name, Span span, Report& report) {
+  return columns_of<3>(name, span, {"x", "y", "z"}, report);
 }
 
 std::optional<TriangleMesh<double>> triangles_of(const std::string& name, Span span, Report& report) {

@@ -26,6 +26,9 @@ namespace continuo::model::detail {
 /// The columns `x` and `y` of a table, equally long; E270 and E272 as above.
 [[nodiscard]] std::optional<std::array<NamedColumn, 2>> points_of_chain(const std::string& name, Span span,
                                                                         Report& report);
+/// The columns `x`, `y` and `z` of a table, equally long; E270 and E272 as above.
+[[nodiscard]] std::optional<std::array<NamedColumn, 3>> points_of_heights(const std::string& name, Span span,
+                                                                          Report& report);
 /// The triangles of a Wavefront OBJ file; E270 as above, E273 where it is none.
 [[nodiscard]] std::optional<TriangleMesh<double>> triangles_of(const std::string& name, Span span, Report& report);
 

@@ -1,4 +1,5 @@
 // Sizes of characters are numbers of parameters; what they wish may depend on everything.
+#include <algorithm>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -42,36 +43,15 @@ void Characters::make_wishes() {
   for (CharacterDescription& character : work_.made.characters) {
     const BodyText& text = text_.bodies[character.body];
     Scope scope = text.scope;
-    if (const ast::Expression* walk = attribute(text.text->attributes, "walk")) read_walk(character, *walk, scope);
+    if (const ast::Expression* walk = attribute(text.text->attributes, "walk"))
+      std::ranges::copy(numbers_.level(*walk, scope, speed_unit(), "the velocity of a character", false),
+                        character.walk.begin());
     const ast::Expression* jump = attribute(text.text->attributes, "jump");
     if (!jump) continue;
     const Value speed = expressions_.values.number_of(*jump, scope);
     if (!speed.bad)
       character.jump = expressions_.operations.in_unit(*jump, speed, speed_unit(), "the speed at which it jumps");
   }
-}
-
-/// In the plane one number, in space the two horizontal components.
-void Characters::read_walk(CharacterDescription& character, const ast::Expression& text, Scope& scope) {
-  const std::size_t count = text_.axes() - 1;
-  const std::size_t given = size_of_point(text);
-  if (given != count) {
-    report_.fail("E227", text.span,
-                 count == 1 ? "in the plane a character walks along x" : "in space a character walks along x and y",
-                 given == 1 ? "this is one number" : fmt::format("here are {} components", given),
-                 count == 1 ? "write walk 2 [m/s]: the horizontal velocity" : "write walk (2, 0) [m/s]");
-    return;
-  }
-  if (count == 1) {
-    const Value value = expressions_.values.number_of(text, scope);
-    if (!value.bad)
-      character.walk[0] = expressions_.operations.in_unit(text, value, speed_unit(), "the velocity of a character");
-    return;
-  }
-  const std::vector<Term> terms = numbers_.components(text, scope, count);
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    character.walk[k] =
-        expressions_.operations.in_unit(terms[k].text, terms[k].value, speed_unit(), "the velocity of a character");
 }
 
 Measured Characters::speed_unit() const {

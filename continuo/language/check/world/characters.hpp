@@ -23,7 +23,6 @@ class Characters {
   void make_wishes();
 
  private:
-  void read_walk(CharacterDescription& character, const ast::Expression& text, Scope& scope);
   [[nodiscard]] Measured speed_unit() const;
 
   Expressions& expressions_;

@@ -33,8 +33,11 @@ void Meshes::add(const ast::WorldMesh& mesh, Scope& scope, Span span) {
     if (!node->valid()) *node = zero;  // said already: what is wrong is no mesh, but has a name
   refuse_rolling(mesh, made, span);
   if (const auto* file = std::get_if<ast::Text>(&mesh.corners.node)) {
-    mesh.kind.text == "chain" ? read_chain(file->value, made, mesh.corners.span)
-                              : read_triangles(file->value, made, mesh.corners.span);
+    mesh.kind.text == "chain"     ? read_chain(file->value, made, mesh.corners.span)
+    : mesh.kind.text == "heights" ? read_heights(file->value, mesh, made)
+                                  : read_triangles(file->value, made, mesh.corners.span);
+  } else if (mesh.kind.text == "heights") {
+    make_heights(mesh, made, scope);
   } else {
     read_points(mesh, made, scope);
   }
@@ -44,7 +47,10 @@ void Meshes::add(const ast::WorldMesh& mesh, Scope& scope, Span span) {
 bool Meshes::fits_dimension(const ast::WorldMesh& mesh) const {
   const bool is_chain = mesh.kind.text == "chain", plane = text_.dimension == 2;
   if (is_chain == plane) return true;
-  report_.fail("E227", mesh.kind.span, is_chain ? "a chain is ground of the plane" : "a mesh is ground of space",
+  report_.fail("E227", mesh.kind.span,
+               is_chain                   ? "a chain is ground of the plane"
+               : mesh.kind.text == "mesh" ? "a mesh is ground of space"
+                                          : "heights over a grid are ground of space",
                fmt::format("the world has {} dimensions", text_.dimension),
                plane ? "write `dimension 3` in the world, or a chain: wall ground chain (0, 0) (4, 0) (6, 1)"
                      : "in space ground is a mesh of triangles: wall ground mesh \"hills.obj\"");
@@ -66,8 +72,8 @@ void Meshes::read_points(const ast::WorldMesh& mesh, MeshDescription& made, Scop
     for (const ast::Expression& text : std::get<ast::List>(mesh.corners.node).items)
       are_good = are_good && add_point(text, made, inner);
   };
-  if (mesh.family) {
-    const auto& [index, range] = *mesh.family;
+  if (!mesh.families.empty()) {
+    const auto& [index, range] = mesh.families.front();
     are_good =
         expressions_.indices.for_each_index(index, range, scope, [&](std::size_t) { add_all(scope); }) && are_good;
   } else {

@@ -25,6 +25,8 @@ class Meshes {
   [[nodiscard]] bool add_point(const ast::Expression& text, MeshDescription& made, Scope& scope) const;
   void read_chain(const std::string& file, MeshDescription& made, Span span) const;
   void read_triangles(const std::string& file, MeshDescription& made, Span span) const;
+  void make_heights(const ast::WorldMesh& mesh, MeshDescription& made, Scope& scope) const;  // heights.cpp
+  void read_heights(const std::string& file, const ast::WorldMesh& mesh, MeshDescription& made) const;
   [[nodiscard]] std::optional<double> factor_of(const std::string& unit, std::string_view column, Span span) const;
 
   Expressions& expressions_;

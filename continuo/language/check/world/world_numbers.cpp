@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/check/world/attributes.hpp>
 #include <continuo/language/check/world/world_numbers.hpp>
 
 namespace continuo::model::detail {
@@ -100,6 +101,33 @@ NodePoint WorldNumbers::point(const ast::Expression& expression, Scope& scope, c
     }
     made[i] = expressions_.operations.in_unit(terms[i].text, terms[i].value, wanted, what);
     if (parameters_only) expect(made[i], Sort::any, terms[i].text.span, std::string(what));
+  }
+  return made;
+}
+
+std::vector<NodeId> WorldNumbers::level(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                        std::string_view what, bool parameters_only) const {
+  const std::size_t count = text_.axes() - 1, given = size_of_point(expression);
+  if (given != count) {
+    report_.fail("E227", expression.span,
+                 fmt::format("{} has {} in {} dimensions", what, count == 1 ? "one component" : "two components",
+                             text_.dimension),
+                 given == 1 ? "this is one number" : fmt::format("here are {} components", given),
+                 count == 1 ? "it is along x" : "they are along x and y, as in (1, 2)");
+    return {};
+  }
+  std::vector<Term> terms;
+  if (count > 1) {
+    terms = components(expression, scope, count);
+  } else if (const Value value = expressions_.values.number_of(expression, scope); !value.bad) {
+    terms.push_back({expression, value});
+  }
+  std::vector<NodeId> made;
+  for (const Term& term : terms) {
+    if (parameters_only && !expressions_.values.only_parameters(term.value.node, term.text.span, what)) return {};
+    made.push_back(expressions_.operations.in_unit(term.text, term.value, wanted, what));
+    if (!made.back().valid()) return {};
+    if (parameters_only) expect(made.back(), Sort::any, term.text.span, std::string(what));
   }
   return made;
 }

@@ -23,6 +23,9 @@ class WorldNumbers {
   /// (1, 2); of parameters unless everything may stand in it.
   [[nodiscard]] NodePoint point(const ast::Expression& expression, Scope& scope, const Measured& wanted,
                                 std::string_view what, bool parameters_only = true) const;
+  /// (1, 2) along all axes but the last one; empty where it is wrong.
+  [[nodiscard]] std::vector<NodeId> level(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                          std::string_view what, bool parameters_only = true) const;
   /// About an axis: in the plane one number, in space three.
   [[nodiscard]] NodeId in_plane(const ast::Expression& text, Scope& scope, const Measured& wanted,
                                 std::string_view what) const;
