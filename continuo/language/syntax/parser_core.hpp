@@ -244,7 +244,7 @@ class Parser {
   [[nodiscard]] ast::WorldMesh parse_heights(std::optional<ast::Identifier> name);
   template <class Parse>
   [[nodiscard]] ast::Expression parse_for_each(const std::vector<std::pair<ast::Identifier, ast::Range>>& families,
-                                               std::string_view what, Parse&& parse);
+                                               std::string_view what, std::string_view end, Parse&& parse);
   [[nodiscard]] ast::WorldMesh parse_chain(std::optional<ast::Identifier> name, ast::Identifier kind,
                                            std::optional<ast::Expression> first = std::nullopt);
   [[nodiscard]] ast::WorldContainer parse_world_container();

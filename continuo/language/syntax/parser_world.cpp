@@ -271,14 +271,14 @@ ast::WorldMesh Parser::parse_world_mesh(std::optional<ast::Identifier> name) {
 /// What stands in braces behind `for` and these indices.
 template <class Parse>
 Expression Parser::parse_for_each(const std::vector<std::pair<ast::Identifier, ast::Range>>& families, Word what,
-                                  Parse&& parse) {
+                                  Word end, Parse&& parse) {
   expect(TokenKind::open_brace, fmt::format("`{{` and {}", what));
   for (const auto& [index, range] : families) indices_.push_back(index.text);
   accept(TokenKind::line_end);
   Expression made = parse();
   for (std::size_t k = 0; k < families.size(); ++k) indices_.pop_back();
   accept(TokenKind::line_end);
-  expect(TokenKind::close_brace, "`}`");
+  expect(TokenKind::close_brace, std::string(end));
   return made;
 }
 
@@ -291,7 +291,7 @@ ast::WorldMesh Parser::parse_heights(std::optional<ast::Identifier> name) {
     heights.families.push_back(parse_index());
     expect(TokenKind::comma, "`,` and a second index, as in for i in 0..9, j in 0..9 { sin(i)*sin(j) }");
     heights.families.push_back(parse_index());
-    heights.corners = parse_for_each(heights.families, "the height for each, as in { sin(i)*sin(j) }",
+    heights.corners = parse_for_each(heights.families, "the height for each, as in { sin(i)*sin(j) }", "`}`",
                                      [&] { return parse_tree(Level::additive).expression; });
   } else {
     heights.corners = {ast::Text{parse_text("the name of a file, as in heights \"hills.csv\", or `for`")}, span};
@@ -312,8 +312,9 @@ ast::WorldMesh Parser::parse_chain(std::optional<ast::Identifier> name, ast::Ide
     chain.corners = {ast::Text{parse_text("the name of a file, as in chain from \"hills.csv\"")}, span};
   } else if (!first && accept_word("for")) {
     chain.families.push_back(parse_index());
-    chain.corners = parse_for_each(chain.families, "the points for each, as in for k in 0..9 { (k, h[k]) }",
-                                   [&] { return parse_points("as in for k in 0..9 { (k, h[k]) }"); });
+    chain.corners =
+        parse_for_each(chain.families, "the points for each, as in for k in 0..9 { (k, h[k]) }",
+                       "a further point, or `}`", [&] { return parse_points("as in for k in 0..9 { (k, h[k]) }"); });
   } else {
     chain.corners = parse_points(example, std::move(first));
   }

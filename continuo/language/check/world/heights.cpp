@@ -128,7 +128,7 @@ void Meshes::make_heights(const ast::WorldMesh& mesh, MeshDescription& made, Sco
   }
   const NodeId zero = graph_.constant(0);
   std::vector<NodeId> origin{zero, zero};
-  if (from) origin = numbers_.level(*from, scope, work_.length, "where the heights begin");
+  if (from) origin = numbers_.level(*from, scope, work_.length, "the origin of heights");
   const std::vector<NodeId> spacing = numbers_.level(*apart, scope, work_.length, "the spacing of heights");
   const auto columns = expressions_.indices.bounds(first.second, scope);
   const auto rows = expressions_.indices.bounds(second.second, scope);
