@@ -19,7 +19,7 @@ run 0..1 output 0.1
 )"},
     {"fast_with_equations", R"(
 world { gravity (0, -10); wall floor (0, 1) at 0; body ball at (0, 2) velocity (1, 0); body other at (3, 1)
-  mode fast step 1/60 }
+  character hero at (5, 1) walk u; mode fast step 1/60 }
 force on ball = (-2*(ball.x - u), 0)
 u' = ball.x - u
 u(0) = 1
