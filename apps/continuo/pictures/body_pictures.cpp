@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <apps/continuo/pictures/body_pictures.hpp>
+#include <apps/continuo/pictures/lit_color.hpp>
 
 #include <continuo/language/world.hpp>
 
@@ -14,26 +15,8 @@ using worlds::dot, worlds::Point;
 
 // Colours as numbers, which `lc rgb variable` wants: the first of the curves', as on the page.
 constexpr std::array<std::uint32_t, 5> colors_of_bodies = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00};
-constexpr std::uint32_t still = 0x8A8A8A, white = 0xFFFFFF, black = 0x000000;
-constexpr std::string_view wall_color = "#e9e9e9", edge_color = "#8a8a8a", joint_color = "#303030";
+constexpr std::string_view wall_color = "#e9e9e9", joint_color = "#303030";
 constexpr std::string_view as_circles = "using 1:2:3:4 with circles lc rgb variable fs solid noborder";
-constexpr std::string_view as_polygons = "using 1:2:3 with filledcurves closed fc rgb variable";
-
-std::uint32_t mixed(std::uint32_t a, std::uint32_t b, double part) {
-  std::uint32_t color = 0;
-  for (const unsigned shift : {0U, 8U, 16U}) {
-    const double from = a >> shift & 255U, to = b >> shift & 255U;
-    color |= static_cast<std::uint32_t>(std::lround(from + part * (to - from))) << shift;
-  }
-  return color;
-}
-
-constexpr Point sun = {-0.150, 0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left; of length 1
-
-/// The colour of a face, by the cosine between its normal and the light.
-std::uint32_t lit_by(std::uint32_t color, double lit) {
-  return lit > 0.5 ? mixed(color, white, 0.5 * (lit - 0.5)) : mixed(color, black, 0.5 * (0.5 - lit));
-}
 
 std::string circle(Flat at, double radius, std::uint32_t color) {
   return fmt::format("{:.7g} {:.7g} {:.7g} {}\n", at.x, at.y, radius, color);
@@ -62,7 +45,8 @@ BodyPictures::BodyPictures(const worlds::WorldRun& world)
       meshes_(world.meshes()),
       springs_(world.springs()),
       forms_(world.forms()),
-      joints_(world.joints()) {
+      joints_(world.joints()),
+      ground_(dimension_ == 3 ? GroundPictures(meshes_) : GroundPictures()) {
   lower_.fill(std::numeric_limits<double>::infinity());
   upper_.fill(-std::numeric_limits<double>::infinity());
 }
@@ -175,8 +159,8 @@ void BodyPictures::draw_walls(const PictureFrame& frame, PictureParts& parts) co
 }
 
 void BodyPictures::draw_meshes(const PictureFrame& frame, PictureParts& parts) const {
-  for (const worlds::StaticMeshShape& mesh : meshes_)
-    dimension_ == 2 ? draw_chain(mesh, frame, parts) : draw_triangles(mesh, parts);
+  if (dimension_ == 3) return ground_.draw(parts);
+  for (const worlds::StaticMeshShape& mesh : meshes_) draw_chain(mesh, frame, parts);
 }
 
 /// A line, and where one side is not free a band on that side.
@@ -195,41 +179,6 @@ void BodyPictures::draw_chain(const worlds::StaticMeshShape& chain, const Pictur
   }
   if (!chain.thin) parts.curve(fmt::format("using 1:2 with filledcurves closed fc rgb '{}'", wall_color), band);
   parts.curve(fmt::format("with lines lw 2 lc rgb '{}'", edge_color), line);
-}
-
-/// From the farthest to the nearest, lit as the faces of bodies; the backs, which are open, are darker.
-void BodyPictures::draw_triangles(const worlds::StaticMeshShape& mesh, PictureParts& parts) const {
-  constexpr std::size_t few = 5000;  // of more, edges would hide the faces
-  std::vector<std::size_t> order(mesh.facets.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto corner = [&](std::size_t facet, std::size_t k) -> const Point& {
-    return mesh.corners[mesh.facets[facet][k]];
-  };
-  std::ranges::sort(order, {}, [&](std::size_t facet) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Point& p = corner(facet, k);
-      sum += nearness_of(p[0], p[1], p[2]);
-    }
-    return sum;
-  });
-  std::string areas, edges;
-  for (const std::size_t facet : order) {
-    const Point &a = corner(facet, 0), &b = corner(facet, 1), &c = corner(facet, 2);
-    const Point u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
-    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const bool is_front = nearness_of(normal[0], normal[1], normal[2]) > 0;
-    const double lit = dot(normal, sun) / std::sqrt(dot(normal, normal));
-    const std::uint32_t color = is_front || mesh.thin ? lit_by(0xD9D9D9, is_front ? lit : -lit) : still;
-    for (const std::size_t k : {0U, 1U, 2U, 0U}) {
-      const Flat at = flat(corner(facet, k));
-      areas += fmt::format("{:.7g} {:.7g} {}\n", at.x, at.y, color);
-      edges += fmt::format("{:.7g} {:.7g}\n", at.x, at.y);
-    }
-    areas += '\n', edges += '\n';
-  }
-  parts.curve(as_polygons, areas);
-  if (mesh.facets.size() <= few) parts.curve(fmt::format("with lines lw 0.5 lc rgb '{}'", edge_color), edges);
 }
 
 void BodyPictures::draw_springs(const live::Bodies& bodies, PictureParts& parts) const {
@@ -349,7 +298,7 @@ std::string BodyPictures::sphere(const live::Bodies& bodies, std::size_t i) cons
   return text;
 }
 
-/// From the farthest to the nearest; spheres that follow each other are one curve.
+/// From the farthest to the nearest, each with the ground before it; spheres that follow each other are one curve.
 void BodyPictures::draw_in_space(const live::Bodies& bodies, PictureParts& parts) const {
   std::vector<std::size_t> order(shapes_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -368,6 +317,11 @@ void BodyPictures::draw_in_space(const live::Bodies& bodies, PictureParts& parts
     if (is_sphere != are_spheres) flush();
     are_spheres = is_sphere;
     text += is_sphere ? sphere(bodies, i) : polyhedron(bodies, i);
+    PictureParts ground;
+    ground_.draw_before(place(bodies, i), radius_of(i), ground);
+    if (ground.curves.empty()) continue;
+    flush();
+    parts.append(ground);
   }
   flush();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <apps/continuo/pictures/ground_pictures.hpp>
 #include <apps/continuo/pictures/picture_parts.hpp>
 
 #include <continuo/live/audience.hpp>
@@ -20,7 +21,7 @@ class BodyPictures {
   void take(const live::Bodies& bodies, PictureFrame& frame);
   /// Behind all that `take` has seen.
   void take_meshes(PictureFrame& frame) const;
-  /// In the background, what does not move.
+  /// In the background, what does not move; `draw` draws ground once more where it is before a body.
   void draw_walls(const PictureFrame& frame, PictureParts& parts) const;
   void draw_meshes(const PictureFrame& frame, PictureParts& parts) const;
   void draw(const live::Bodies& bodies, PictureParts& parts) const;
@@ -42,7 +43,6 @@ class BodyPictures {
   std::vector<Flat> wall_in_plane(const worlds::WallShape& wall, const PictureFrame& frame) const;
   std::vector<Flat> wall_in_space(const worlds::WallShape& wall) const;
   void draw_chain(const worlds::StaticMeshShape& chain, const PictureFrame& frame, PictureParts& parts) const;
-  void draw_triangles(const worlds::StaticMeshShape& mesh, PictureParts& parts) const;
 
   int dimension_;
   std::vector<worlds::BodyShape> shapes_;
@@ -51,6 +51,7 @@ class BodyPictures {
   std::vector<worlds::SpringShape> springs_;
   std::vector<worlds::BodyForm> forms_;
   std::vector<worlds::JointShape> joints_;
+  GroundPictures ground_;        // of meshes, in space
   worlds::Point lower_, upper_;  // that bodies reach
 };
 

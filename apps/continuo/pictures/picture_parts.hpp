@@ -49,6 +49,11 @@ struct PictureParts {
     curves += fmt::format("{}'-' {} notitle", curves.empty() ? "" : ", ", style);
     data += points + "e\n";
   }
+  void append(const PictureParts& other) {
+    objects += other.objects;
+    if (!curves.empty() && !other.curves.empty()) curves += ", ";
+    curves += other.curves, data += other.data;
+  }
   void line(const std::vector<Flat>& points, std::string_view color, double thick) {
     std::string text;
     for (const Flat p : points) text += fmt::format("{} {}\n", p.x, p.y);

@@ -1,4 +1,6 @@
 // Writes the parts of a checked model as JSON.
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +39,8 @@ class ModelWriter {
             {"checks", list(model_.checks, &ModelWriter::check)},
             {"bodies", model_.has_world() ? list(model_.world->bodies, &ModelWriter::body) : Json::array()},
             {"joints", model_.has_world() ? list(model_.world->joints, &ModelWriter::joint) : Json::array()},
+            {"walls", model_.has_world() ? list(model_.world->walls, &ModelWriter::wall) : Json::array()},
+            {"meshes", model_.has_world() ? list(model_.world->meshes, &ModelWriter::mesh) : Json::array()},
             {"run", run()}};
   }
 
@@ -98,16 +102,16 @@ class ModelWriter {
             {"mode", event.mode ? Json(model_.modes[*event.mode].name) : Json()}};
   }
   Json check(const model::Check& check) const { return check.text; }
+  Json number(model::NodeId node) const { return node.valid() ? Json(evaluate(model_, node, start_)) : Json(); }
   Json body(const model::BodyDescription& body) const {
-    const auto number = [&](model::NodeId node) {
-      return node.valid() ? Json(evaluate(model_, node, start_)) : Json();
-    };
     return {{"name", body.name},
             {"fixed", body.fixed},
             {"mass", body.fixed ? Json() : number(body.mass)},
             {"radius", number(body.radius)},
             {"shape", name_of(body.shape.kind)},
-            {"driven", body.driven}};
+            {"driven", body.driven},
+            {"sensor", body.traits.sensor},
+            {"character", body.character}};
   }
   static const char* name_of(model::ShapeDescription::Kind kind) {
     switch (kind) {
@@ -130,6 +134,21 @@ class ModelWriter {
             {"kind", joint.kind},
             {"first", bodies[joint.first].name},
             {"second", joint.second == model::no_body ? Json() : Json(bodies[joint.second].name)}};
+  }
+  /// Free where normal . x >= offset.
+  Json wall(const model::WallDescription& wall) const {
+    Json normal = Json::array();
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(model_.world->dimension); ++axis)
+      normal.push_back(number(wall.normal[axis]));
+    return {{"name", wall.name}, {"normal", normal}, {"offset", number(wall.offset)}, {"thin", wall.thin}};
+  }
+  Json mesh(const model::MeshDescription& mesh) const {
+    const bool is_chain = model_.world->dimension == 2;
+    const std::size_t corners = std::max(mesh.points.size(), mesh.corners.size());
+    const std::size_t segments = mesh.is_closed ? corners : corners - 1;
+    return {{"name", mesh.name},        {"kind", is_chain ? "chain" : "triangles"},
+            {"corners", corners},       {"facets", is_chain ? segments : mesh.triangles.size()},
+            {"closed", mesh.is_closed}, {"thin", mesh.thin}};
   }
   Json run() const {
     const model::RunSettings& run = model_.run;
