@@ -70,7 +70,7 @@ enum class Locked : std::uint8_t { none = 0, x = 1, y = 2, z = 4, turn_x = 8, tu
   return (static_cast<unsigned>(a) & static_cast<unsigned>(b)) == static_cast<unsigned>(b);
 }
 
-/// What few bodies need. The fast motion knows all of it, the exact motion all but `is_sensor` and `locked`.
+/// What few bodies need. The fast motion knows all of it, the exact motion all but `is_sensor`.
 template <class Real>
 struct BodyTraits {
   bool is_driven = false;                  // of a fixed body: moves with its velocity and spin, whatever meets it

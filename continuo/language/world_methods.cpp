@@ -2,6 +2,7 @@
 // Compares a world with what the exact motion of shapes and joints knows.
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <continuo/language/world_methods.hpp>
@@ -9,16 +10,6 @@
 namespace continuo::model {
 
 namespace {
-
-/// What of a joint the exact motion does not know; nothing where it knows all.
-std::string_view unknown_of(const JointDescription& joint, int dimension) {
-  if (joint.kind == "gear" && dimension == 3) return "gears in space";
-  if (joint.kind == "rope" || joint.lower.valid()) return "limits of joints";
-  if (joint.kind == "pull") return "joints that pull";
-  if (joint.hertz.valid()) return "springs of joints";
-  if (joint.breaks_at.valid() || joint.breaks_at_torque.valid()) return "joints that break";
-  return {};
-}
 
 /// Whether an expression changes in a run: with the time, a state or an input.
 bool changes(const Model& model, NodeId node) {
@@ -70,17 +61,17 @@ std::vector<ExactRefusal> exact_refusals(const WorldDescription& world, const Mo
   for (const BodyDescription& body : world.bodies) {
     if (body.character) refuse("characters", body.span);
     if (body.character) continue;
-    if (body.traits.sensor || body.traits.locked != 0) refuse("sensors and no locked directions", body.span);
+    if (body.traits.sensor) refuse("sensors", body.span);
     if (rolls(body.material))
       refusals.push_back({"rolling resistance exists only in worlds of balls without joints", body.span});
   }
   for (const MeshDescription& mesh : world.meshes) refuse("meshes and no chains", mesh.span);
   for (const JointDescription& joint : world.joints) {
-    if (const std::string_view unknown = unknown_of(joint, world.dimension); !unknown.empty()) {
-      refuse(unknown, joint.span);
-    } else if (joint.motor_speed.valid() && changes(model, joint.motor_speed)) {
+    if (joint.motor_speed.valid() && changes(model, joint.motor_speed))
       refuse("motors whose speed changes", joint.span);
-    }
+    if (joint.kind == "pull" &&
+        std::ranges::any_of(joint.target, [&](NodeId node) { return node.valid() && changes(model, node); }))
+      refuse("pulls whose target changes", joint.span);
   }
   for (const ForceDescription& force : world.forces)
     if (reads_turns(world, model, force)) refuse("forces that depend on how bodies stand or spin", force.span);

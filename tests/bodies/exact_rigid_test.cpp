@@ -681,15 +681,15 @@ TEST(ExactRigid, RefusesWhatItDoesNotKnow) {
       require(world.add_joint(joint));
     };
   };
-  refuses(with_joint({.kind = JointKind::pull}), "joints that pull");
-  refuses(with_joint({.kind = JointKind::gear}), "gears in space");
-  refuses(with_joint({.limits = JointLimits<double>{.lower = -1}}), "limits of joints");
-  refuses(with_joint({.spring = JointSpring<double>{.hertz = 1}}), "springs of joints");
-  refuses(with_joint({.breaks_at = 5}), "joints that break");
+  refuses(with_joint({.limits = JointLimits<double>{.lower = -1}}), "hinges in space with one limit only");
+  refuses(with_joint({.kind = JointKind::distance,
+                      .anchor_b = V3{{1, 0, 0}},
+                      .limits = JointLimits<double>{.lower = 0, .upper = 0}}),
+          "distances with an upper limit of 0");
+  refuses(with_joint({.kind = JointKind::slider, .limits = JointLimits<double>{.lower = 1}}),
+          "beyond its lower limit by 1.0");
   refuses([](World3& world, BodyHandle box, Options&) { require(world.set_traits(box, {.is_sensor = true})); },
           "sensors");
-  refuses([](World3& world, BodyHandle box, Options&) { require(world.set_traits(box, {.locked = Locked::x})); },
-          "locked directions");
   refuses([](World3& world, BodyHandle, Options&) { world.material[0].rolling_resistance = 0.1; },
           "rolling resistance");
   refuses([](World3&, BodyHandle, Options& options) { options.step = 0.1; }, "steps of a fixed size");

@@ -1,6 +1,6 @@
 // The end of a flight with lasting contacts or motors, within a step: a contact force falls to 0, a contact begins to
-// slip or to stick, a corner comes to lie beside one that touches, a contact leaves its feature, or a motor reaches its
-// speed or its greatest force.
+// slip or to stick, a corner comes to lie beside one that touches, a contact leaves its feature, a motor reaches its
+// speed or its greatest force, the force of a limit falls to 0, or a joint bears its strength.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -192,6 +192,15 @@ class ContactGuards {
       all.push_back(drift_ - gap), all.push_back(pair.overlap + gap);
     }
     add_motors(system, all);
+    for (std::size_t j = 0; j < system.joints().size(); ++j) {
+      const LimitSide held = system.joints()[j].held;
+      if (held == LimitSide::lower || held == LimitSide::upper) all.push_back(system.push_of_limit(j) / force_);
+    }
+    const auto breaks = [](const auto& joint) { return has_strength(joint.joint); };
+    if (!std::ranges::any_of(system.joints(), breaks)) return all;
+    system.find_shortest_forces(t, state);
+    for (std::size_t j = 0; j < system.joints().size(); ++j)
+      if (breaks(system.joints()[j])) all.push_back(1 - system.strain(j));
     return all;
   }
   /// Of each pair that rubs its friction or its slip, then whether the forces of all that slip are stable.

@@ -21,15 +21,16 @@
 
 namespace continuo {
 
-/// A point at which two parts touch, with the numbers of their bodies in the system.
+/// A point at which two parts touch, or a limit at which a joint is, with the numbers of their bodies in the system.
 template <class Real, int Dim>
 struct TouchingPoint {
-  std::uint32_t pair = 0;  // of parts
+  std::uint32_t pair = 0;  // of parts; each limit has a number of its own
   std::uint32_t a = 0, b = 0;
   Vector<Real, Dim> normal{}, place{};  // the normal is from a to b
   Material<Real> material{};            // of both surfaces
   std::optional<ContactFeature<Real, Dim>> feature{};
   Real gap{};
+  std::optional<JointLimit> limit{};
 };
 
 template <class Real, int Dim>
@@ -90,7 +91,7 @@ class ContactInstant {
       if (std::abs(rate_of(k)) <= slow_of(k)) closed_.push_back(k);
     if (closed_.empty()) return {};
     for (const std::size_t k : closed_)
-      if (!points_[k].feature)
+      if (!points_[k].feature && !points_[k].limit)
         return cannot_continue(
             "two bodies touch by features of which the exact motion cannot keep a contact: sharp "
             "corners or edges that lie on each other");
@@ -126,16 +127,24 @@ class ContactInstant {
   [[nodiscard]] const ExactBody<Real, Dim>& body(std::uint32_t k) const { return std::as_const(system_).bodies()[k]; }
   [[nodiscard]] Row row_of(std::size_t k) const {
     const Point& at = points_[k];
+    if (at.limit) return system_.limit_row(*at.limit);
     Row row = row_along(body(at.a), body(at.b), Moved{at.normal, {}}, Moved{at.place, {}});
     row.a = at.a, row.b = at.b;
     return row;
   }
   [[nodiscard]] Row across_of(std::size_t k) const {
     const Point& at = points_[k];
+    if (at.limit) return nothing_across(at);
     V across = at.normal;
     across[0] = -at.normal[1], across[1] = at.normal[0];
     Row row = row_along(body(at.a), body(at.b), Moved{across, {}}, Moved{at.place, {}});
     row.a = at.a, row.b = at.b;
+    return row;
+  }
+  /// A limit does not rub.
+  [[nodiscard]] static Row nothing_across(const Point& limit) {
+    Row row;
+    row.a = limit.a, row.b = limit.b;
     return row;
   }
   [[nodiscard]] Real rate_of(const Row& row) const { return row.rate_of(body(row.a), body(row.b)); }
@@ -151,7 +160,7 @@ class ContactInstant {
     return points_[k].material.restitution < Real(1) || points_[k].material.friction > Real(0);
   }
   [[nodiscard]] Real slow_of(std::size_t k) const {
-    return std::max(Real(16 * rounding_of(k)), loses(k) ? slow_ : Real(0));
+    return std::max(Real(16 * rounding_of(k)), loses(k) && !points_[k].limit ? slow_ : Real(0));
   }
   [[nodiscard]] std::vector<Real> joint_rates(const std::vector<Row>& joints) const {
     std::vector<Real> rates;
@@ -180,7 +189,7 @@ class ContactInstant {
 
   template <class Struck>
   [[nodiscard]] Status strike_together(const std::vector<std::size_t>& approaching, bool is_plastic, Struck&& struck) {
-    const std::vector<Row> joints = system_.joint_rows();
+    const std::vector<Row> joints = system_.struck_joint_rows();
     std::vector<Row> rows;
     std::vector<Real> before, rate_after;
     bool rubs = false;
@@ -391,6 +400,7 @@ class ContactInstant {
   }
   [[nodiscard]] Row lasting_row(std::size_t k, bool is_across) const {
     const Point& at = points_[k];
+    if (at.limit) return is_across ? nothing_across(at) : system_.limit_row(*at.limit);
     const ContactPlace<Real, Dim> place = place_of(*at.feature, body(at.a), body(at.b));
     Row row = normal_row(place, body(at.a), body(at.b));
     if constexpr (Dim == 2) {

@@ -36,8 +36,10 @@ class NearParts {
   using V = Vector<Real, Dim>;
   using Body = ExactBody<Real, Dim>;
 
-  /// Takes the parts of all bodies, and the pairs of bodies that joints keep from colliding.
-  void begin(const World<Real, Dim>& world, std::span<const ActingJoint<Real, Dim>> joints) {
+  using Joints = std::span<const ActingJoint<Real, Dim>>;
+
+  /// Takes the parts of all bodies, and the pairs of bodies that joints, among them `broken` ones, keep from colliding.
+  void begin(const World<Real, Dim>& world, Joints joints, Joints broken) {
     parts_.clear(), balls_.clear(), apart_.clear(), pairs_.clear();
     balls_.resize(world.size());
     for (std::uint32_t i = 0; i < world.size(); ++i) {
@@ -50,9 +52,15 @@ class NearParts {
       balls_[i].rounding = balls_[i].reach = world.radius[i];
       parts_.push_back({.convex = &balls_[i], .body = i});
     }
-    for (const auto& joint : joints)
-      if (!joint.joint.collide) apart_.emplace_back(std::min(joint.a, joint.b), std::max(joint.a, joint.b));
+    for (const Joints all : {joints, broken})
+      for (const auto& joint : all)
+        if (!joint.joint.collide) apart_.emplace_back(std::min(joint.a, joint.b), std::max(joint.a, joint.b));
     std::ranges::sort(apart_);
+  }
+  /// Two bodies may collide though a joint, by now broken, connected them; for the next list.
+  void let_meet(std::uint32_t a, std::uint32_t b) {
+    const auto at = std::ranges::lower_bound(apart_, std::pair(std::min(a, b), std::max(a, b)));
+    if (at != apart_.end() && *at == std::pair(std::min(a, b), std::max(a, b))) apart_.erase(at);
   }
   [[nodiscard]] std::span<const ExactPart<Real, Dim>> parts() const { return parts_; }
   /// In increasing order.

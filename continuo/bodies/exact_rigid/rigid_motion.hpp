@@ -24,6 +24,7 @@
 #include <continuo/bodies/exact_rigid/contact_guards.hpp>
 #include <continuo/bodies/exact_rigid/contact_instant.hpp>
 #include <continuo/bodies/exact_rigid/lasting_journal.hpp>
+#include <continuo/bodies/exact_rigid/limit_search.hpp>
 #include <continuo/bodies/exact_rigid/near_parts.hpp>
 #include <continuo/bodies/exact_rigid/rigid_flight.hpp>
 #include <continuo/bodies/exact_rigid/safe_time.hpp>
@@ -62,7 +63,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   void load(ByteReader& reader) override {
     transfer(reader);
     reader.expect(step_ >= Real(0) && step_ < never, "a step that cannot be");
-    near_.begin(world_, {});
+    near_.begin(world_, {}, {});
     reader.expect(lasting_.fits(near_.parts().size(), world_.walls().size()), "contacts of other bodies");
   }
 
@@ -109,8 +110,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (world_.material[i].rolling_resistance > Real(0))
         return invalid_input("rolling resistance exists only in worlds of balls without joints");
       const BodyTraits<Real> traits = world_.traits(i);
-      if (traits.is_sensor || traits.locked != Locked::none)
-        return invalid_input("the exact motion knows no sensors and no locked directions: use FastMotion");
+      if (traits.is_sensor) return invalid_input("the exact motion knows no sensors: use FastMotion");
     }
     for (const JointHandle handle : world_.joints()) {
       const Joint<Real, Dim>& joint = *world_.find(handle);
@@ -132,15 +132,18 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
         group_of_.assign(n + 1, nowhere), place_in_group_.assign(n + 1, 0);
     is_whole_ = !world_.springs.empty() || world_.attraction.constant != Real(0) || world_.drag.linear != Real(0) ||
                 world_.drag.quadratic != Real(0) || !world_.force_laws.empty() || !world_.torque_laws.empty();
+    std::vector<ActingJoint<Real, Dim>> broken;
     for (const JointHandle handle : world_.joints()) {
       const Joint<Real, Dim>& joint = *world_.find(handle);
-      if (joint.is_broken) continue;
+      if (joint.is_broken && (!world_.contains(joint.b) || !world_.contains(joint.a))) continue;
       ActingJoint<Real, Dim> acting{.handle = handle, .joint = joint, .a = number_of(joint.a), .b = number_of(joint.b)};
       if (bodies_[acting.a].is_fixed() && bodies_[acting.b].is_fixed()) continue;
       if (joint.motor) acting.motor = MotorMode::keeps_speed;
-      joints_.push_back(std::move(acting));
+      acting.held = lasting_limit(joint);
+      (joint.is_broken ? broken : joints_).push_back(std::move(acting));
     }
-    near_.begin(world_, joints_);
+    near_.begin(world_, joints_, broken);
+    for (const auto& joint : broken) let_meet(joint);
     contact_time_ = options_.contact_time.value_or(usual_contact_time(world_));
   }
   void take_kept() {
@@ -160,6 +163,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     list_pairs();
     if (Status fault = near_.check_number(); !fault) return fault;
     if (Status fault = check_overlaps(); !fault) return fault;
+    if (Status fault = check_limits(); !fault) return fault;
     std::vector<std::uint32_t> all;
     for (std::uint32_t i = 0; i < world_.size(); ++i)
       if (!bodies_[i].is_fixed()) all.push_back(i);
@@ -178,6 +182,25 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     }
     return {};
   }
+  [[nodiscard]] Status check_limits() const {
+    for (const auto& joint : joints_) {
+      const Body &a = bodies_[joint.a], &b = bodies_[joint.b];
+      std::vector<MotionRow<Real, Dim>> none;
+      for (const LimitSide side : {LimitSide::lower, LimitSide::upper}) {
+        if (!has_limit(joint.joint, side)) continue;
+        const Real gap = JointConstraints<Real, Dim>(joint, a, b, none).limit(side).error;
+        const bool is_angle = joint.joint.kind == JointKind::hinge;
+        const Real size = is_angle ? Real(1) : std::max(reach_of(joint.a), reach_of(joint.b));
+        if (gap < -most_overlap * size)
+          return invalid_input("a joint is beyond its " + std::string(side == LimitSide::lower ? "lower" : "upper") +
+                               " limit by " + std::to_string(-gap) +
+                               " where the exact motion begins: place its bodies within its limits, or move the world "
+                               "with FastMotion until they are");
+      }
+    }
+    return {};
+  }
+  [[nodiscard]] Real reach_of(std::uint32_t i) const { return i < world_.size() ? world_.radius[i] : Real(0); }
   void store() {
     kept_.assign(world_.size(), {});
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
@@ -228,7 +251,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
         const std::vector<std::uint32_t> movers = movers_of(what.index);
         for (const std::uint32_t i : movers)
           if (Status fault = check_progress(i); !fault) return fault;
-        return resolve(movers);
+        return resolve_and_list(movers);
       }
       case What::parts_meet:
         return meet(near_.pairs()[what.index]);
@@ -266,7 +289,13 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (Status fault = check_progress(i); !fault) return fault;
       seeds.push_back(i);
     }
-    return resolve(seeds);
+    return resolve_and_list(seeds);
+  }
+  /// A joint that breaks lets its bodies meet.
+  [[nodiscard]] Status resolve_and_list(const std::vector<std::uint32_t>& seeds) {
+    if (Status fault = resolve(seeds); !fault || !std::exchange(are_pairs_new_, false)) return fault;
+    list_anew();
+    return near_.check_number();
   }
   /// An error where a body meets others again and again and time does not go on: without it a wrong foresight, or
   /// impacts of bodies jammed between others, would be a call that never ends.
@@ -301,6 +330,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     if (end < until_) queue_.push({end, What::step_ends, index, stamp_[movers.front()], 0});
     group.change = never;
     if (!group.guards.is_empty()) group.change = group.guards.first_change(*group.flight).value_or(never);
+    if (const auto reached = LimitSearch<Real, Dim>::first_reached(*group.flight, world_.radius))
+      group.change = std::min(group.change, *reached);
     if (group.change < until_) queue_.push({group.change, What::contact_changes, index, stamp_[movers.front()], 0});
     if (group.change == never && end < until_ && jams(*group.flight)) return ended(*group.flight);
     for (const std::uint32_t i : movers) {
@@ -486,16 +517,24 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
 
   /// Resolves the present instant for these bodies and all that they touch, and lets them fly on.
   [[nodiscard]] Status resolve(const std::vector<std::uint32_t>& seeds) {
-    const std::vector<std::uint32_t> bodies = gather(seeds);
+    std::vector<std::uint32_t> bodies = gather(seeds);
+    if (remove_broken_joints()) {
+      list_pairs();
+      bodies = gather(bodies);
+    }
     System instant(world_, bodies_, bodies, now_, is_whole_);
-    for (const auto& joint : joints_)
-      if (is_gathered_[joint.a] || is_gathered_[joint.b]) instant.add(joint, bodies_);
+    for (auto& joint : joints_) {
+      if (!is_gathered_[joint.a] && !is_gathered_[joint.b]) continue;
+      joint.held = lasting_limit(joint.joint);
+      instant.add(joint, bodies_);
+    }
     std::vector<Point> points = find_points(instant, bodies);
-    if (std::ranges::any_of(points, [&](const Point& point) { return is_deep(point); })) {
+    if (std::ranges::any_of(points, [&](const Point& point) { return is_deep(instant, point); })) {
       ContactInstant<Real, Dim>(instant, points, Real(0), Real(0)).separate();
       for (std::size_t k = 0; k < instant.moving(); ++k) bodies_[bodies[k]] = instant.bodies()[k];
       points = find_points(instant, bodies);
     }
+    if (Status fault = check_motors(instant, points); !fault) return fault;
     instant.find_free_motion(now_);
     Real pull(0);
     for (std::uint32_t k = 0; k < instant.moving(); ++k) pull = std::max(pull, length(instant.linear(k)));
@@ -513,6 +552,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     choose_motors(instant);
     if (status = resolver.choose_lasting(now_); !status) return status;
     note_lasting(resolver, points);
+    hold_limits(resolver, points);
     return fly(bodies, instant, resolver, points);
   }
 
@@ -552,12 +592,74 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     std::ranges::sort(all);
     return all;
   }
-  /// Whether motors keep their speed from here on, or work with all their force.
-  void choose_motors(System& instant) {
-    constexpr Real near = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-10);
+  [[nodiscard]] Status check_motors(const System& instant, const std::vector<Point>& points) const {
+    for (const Point& point : points) {
+      if (!point.limit) continue;
+      const auto& joint = instant.joints()[point.limit->joint];
+      if (joint.motor == MotorMode::none || joint.joint.motor->most < never || joint.joint.kind == JointKind::wheel)
+        continue;
+      const Real speed = joint.joint.motor->speed;
+      if (point.limit->side == LimitSide::upper ? speed > Real(0) : speed < Real(0))
+        return cannot_continue("a motor without a greatest force drives its joint against its limit, at t = " +
+                               std::to_string(now_) + ": give it a greatest force, or take the limit away");
+    }
+    return {};
+  }
+  /// The numbers of the joints of the present instant.
+  [[nodiscard]] std::vector<std::size_t> gathered_joints() const {
     std::vector<std::size_t> numbers;
     for (std::size_t j = 0; j < joints_.size(); ++j)
       if (is_gathered_[joints_[j].a] || is_gathered_[joints_[j].b]) numbers.push_back(j);
+    return numbers;
+  }
+  /// Limits that last hold their joints from here on.
+  void hold_limits(const ContactInstant<Real, Dim>& resolver, const std::vector<Point>& points) {
+    const std::vector<std::size_t> numbers = gathered_joints();
+    for (const auto& one : resolver.lasting())
+      if (const auto& limit = points[one.point].limit) joints_[numbers[limit->joint]].held = limit->side;
+  }
+  /// Marks the joints of a system that bear more than their strength. Whether there are any.
+  [[nodiscard]] bool break_joints(System& system, const X& state) {
+    const auto is_weak = [](const auto& joint) { return has_strength(joint.joint); };
+    if (!std::ranges::any_of(system.joints(), is_weak)) return false;
+    system.find_shortest_forces(now_, state);
+    bool any = false;
+    for (std::size_t j = 0; j < system.joints().size(); ++j) {
+      const auto& joint = system.joints()[j];
+      if (!is_weak(joint) || !(system.strain(j) >= 1 - 64 * rounding)) continue;
+      for (auto& one : joints_)
+        if (one.handle == joint.handle) one.breaks = any = true;
+      const auto load = system.load_of(j);
+      Joint<Real, Dim>& broken = *world_.find(joint.handle);
+      broken.is_broken = true;
+      broken.force = load.force, broken.torque = load.torque, broken.motor_effort = load.motor;
+    }
+    return any;
+  }
+  /// Whether bodies that were connected may meet from now on.
+  [[nodiscard]] bool remove_broken_joints() {
+    bool any = false;
+    for (const auto& joint : joints_)
+      if (joint.breaks) any = let_meet(joint) || any;
+    std::erase_if(joints_, [](const auto& joint) { return joint.breaks; });
+    are_pairs_new_ = are_pairs_new_ || any;
+    return any;
+  }
+  /// Lets two bodies collide that a broken joint kept from it, unless they lie in each other.
+  bool let_meet(const ActingJoint<Real, Dim>& broken) {
+    if (broken.joint.collide || broken.joint.a == BodyHandle{}) return false;
+    for (const Part& a : near_.parts())
+      for (const Part& b : near_.parts())
+        if (a.body == broken.a && b.body == broken.b &&
+            separation_of(a, body_at(a.body, now_), b, body_at(b.body, now_)).gap < -touching_gap(b) / 4)
+          return false;
+    near_.let_meet(broken.a, broken.b);
+    return true;
+  }
+  /// Whether motors keep their speed from here on, or work with all their force.
+  void choose_motors(System& instant) {
+    constexpr Real near = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-10);
+    const std::vector<std::size_t> numbers = gathered_joints();
     const auto set = [&](std::size_t k, MotorMode mode) {
       joints_[numbers[k]].motor = mode;
       instant.set_motor(k, mode);
@@ -604,7 +706,11 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     X state;
     group.flight->at(now_, state);
     System& system = group.flight->system();
-    if (!system.joints().empty()) system.evaluate(now_, state), note_overloaded(system);
+    if (!system.joints().empty()) {
+      system.evaluate(now_, state);
+      note_overloaded(system);
+      static_cast<void>(break_joints(system, state));
+    }
     static_cast<void>(system.project(now_, state, true));
     for (std::size_t k = 0; k < system.moving(); ++k) {
       const std::uint32_t i = system.numbers()[k];
@@ -631,7 +737,9 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     return std::abs(instant.free_acceleration(row));
   }
   /// Whether bodies are farther in each other at a point than rounding puts them.
-  [[nodiscard]] bool is_deep(const Point& point) const {
+  [[nodiscard]] bool is_deep(const System& instant, const Point& point) const {
+    if (point.limit)
+      return point.gap < -LimitSearch<Real, Dim>::size_of(instant, point.limit->joint, world_.radius).near / 4;
     return point.gap < -touching_gap(parts_of(near_.pairs()[point.pair])[1]) / 4;
   }
   [[nodiscard]] static Real touching_gap(const Part& part) { return std::sqrt(rounding) / 100 * part.convex->reach; }
@@ -654,7 +762,26 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
         add_points(instant, p, points);
       }
     }
+    add_limits(instant, points);
     return points;
+  }
+  /// The limits at which joints are.
+  void add_limits(const System& instant, std::vector<Point>& points) const {
+    for (std::uint32_t j = 0; j < instant.joints().size(); ++j) {
+      const auto& joint = instant.joints()[j];
+      for (const LimitSide side : {LimitSide::lower, LimitSide::upper}) {
+        if (joint.held == LimitSide::both || !has_limit(joint.joint, side)) continue;
+        const Real gap = instant.limit_row({j, side}).error;
+        if (gap > LimitSearch<Real, Dim>::size_of(instant, j, world_.radius).near) continue;
+        const auto number = static_cast<std::uint32_t>(near_.pairs().size() + points.size());
+        points.push_back({.pair = number,
+                          .a = joint.a,
+                          .b = joint.b,
+                          .material = {.restitution = Real(0), .friction = Real(0)},
+                          .gap = gap,
+                          .limit = JointLimit{j, side}});
+      }
+    }
   }
   void add_points_at_wall(System& instant, std::uint32_t p, std::vector<Point>& points) {
     const NearPair& pair = near_.pairs()[p];
@@ -720,7 +847,14 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       begun.push_back(start_group({first, last}, instant, resolver, points));
       first = last;
     }
-    return take_steps(begun);
+    bool any_breaks = false;
+    for (const std::uint32_t group : begun) {
+      System& system = groups_[group].flight->system();
+      any_breaks = break_joints(system, system.pack()) || any_breaks;
+    }
+    if (!any_breaks) return take_steps(begun);
+    for (const std::uint32_t group : begun) land(group);
+    return resolve(bodies);
   }
   /// Makes a group of these bodies, with their joints and lasting contacts.
   [[nodiscard]] std::uint32_t start_group(std::vector<std::uint32_t> bodies, const System& instant,
@@ -736,6 +870,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     std::uint32_t last_pair = nowhere;
     for (const auto& one : resolver.lasting()) {
       const Point& at = points[one.point];
+      if (at.limit) continue;
       ActingContact<Real, Dim> contact{.feature = *at.feature,
                                        .a = instant.numbers()[at.a],
                                        .b = instant.numbers()[at.b],
@@ -755,22 +890,24 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     watch(group, instant, resolver, points, is_here);
     return index;
   }
-  /// Guards the lasting contacts and the motors of a group, and the pairs that stay closed.
+  /// Guards the lasting contacts and the joints of a group, and the pairs that stay closed.
   template <class IsHere>
   void watch(Group& group, const System& instant, const ContactInstant<Real, Dim>& resolver,
              const std::vector<Point>& points, IsHere&& is_here) {
     System& system = group.flight->system();
     for (const auto& one : resolver.lasting()) {
       const Point& at = points[one.point];
+      if (at.limit) continue;
       if (is_here(instant.numbers()[at.a]) || is_here(instant.numbers()[at.b]))
         group.watched.push_back(near_.pairs()[at.pair]);
     }
     std::ranges::sort(group.watched);
     group.watched.erase(std::ranges::unique(group.watched).begin(), group.watched.end());
-    const bool has_motors = std::ranges::any_of(system.joints(), [](const auto& joint) {
-      return joint.motor != MotorMode::none && joint.joint.motor->most < never;
+    const bool may_change = std::ranges::any_of(system.joints(), [](const auto& joint) {
+      return (joint.motor != MotorMode::none && joint.joint.motor->most < never) || has_strength(joint.joint) ||
+             joint.held == LimitSide::lower || joint.held == LimitSide::upper;
     });
-    if (group.watched.empty() && !has_motors) return;
+    if (group.watched.empty() && !may_change) return;
     Real force(0), speed(0);
     for (std::uint32_t k = 0; k < system.moving(); ++k) {
       const std::uint32_t i = system.numbers()[k];
@@ -815,6 +952,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     return event;
   }
   void note_impact(const System&, const Point& point, const Real& impulse) {
+    if (point.limit) return;
     const NearPair& pair = near_.pairs()[point.pair];
     ++(pair.is_wall ? statistics.wall_collisions : statistics.collisions);
     if (contacts.is_kept()) contacts.add(event_of(pair, ContactChange::impact, point.place, point.normal, impulse));
@@ -830,7 +968,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   }
   void note_lasting(const ContactInstant<Real, Dim>& resolver, const std::vector<Point>& points) {
     std::vector<NearPair> now;
-    for (const auto& one : resolver.lasting()) now.push_back(near_.pairs()[points[one.point].pair]);
+    for (const auto& one : resolver.lasting())
+      if (!points[one.point].limit) now.push_back(near_.pairs()[points[one.point].pair]);
     std::ranges::sort(now);
     now.erase(std::ranges::unique(now).begin(), now.end());
     lasting_.update(
@@ -843,7 +982,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
           if (!contacts.is_kept()) return;
           V place = bodies_[near_.parts()[pair.b].body].x, normal{};
           for (const Point& point : points)
-            if (near_.pairs()[point.pair] == pair) place = point.place, normal = point.normal;
+            if (!point.limit && near_.pairs()[point.pair] == pair) place = point.place, normal = point.normal;
           contacts.add(event_of(pair, change, place, normal, impulse));
         });
   }
@@ -858,6 +997,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   // Of the present call:
   Real until_{}, now_{}, began_{}, contact_time_{};
   std::size_t events_ = 0;
+  bool are_pairs_new_ = false;        // of bodies that a joint connected which has broken since the last list
   bool is_whole_ = false;             // forces couple all bodies
   std::vector<Body> bodies_, begin_;  // at the last instant that concerned them; at the beginning; last, the world
   std::vector<ActingJoint<Real, Dim>> joints_;

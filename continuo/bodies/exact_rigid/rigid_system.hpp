@@ -18,6 +18,7 @@
 #include <continuo/bodies/exact_rigid/contact_feature.hpp>
 #include <continuo/bodies/exact_rigid/contact_tangents.hpp>
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
+#include <continuo/bodies/exact_rigid/joint_springs.hpp>
 #include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 #include <continuo/bodies/forces.hpp>
@@ -63,6 +64,8 @@ class RigidSystem {
               const Real& t, bool whole)
       : world_(&world), numbers_(std::move(moving)), moving_(numbers_.size()), begin_(t), whole_(whole) {
     for (const std::uint32_t i : numbers_) bodies_.push_back(all[i]);
+    if (world.has_traits())
+      for (std::uint32_t k = 0; k < moving_; ++k) note_locks(k, all);
     if (!whole) return;
     x_.resize(world.size()), v_.resize(world.size()), force_all_.resize(world.size());
     orientation_.resize(world.size()), spin_.resize(world.size()), torque_all_.resize(world.size());
@@ -193,7 +196,24 @@ class RigidSystem {
     std::vector<Row> rows;
     for (const auto& joint : joints_)
       JointConstraints<Real, Dim>(joint, bodies_[joint.a], bodies_[joint.b], rows).add();
+    add_locks(rows);
     return rows;
+  }
+  /// Those that answer impulses: a motor with a greatest force has none.
+  [[nodiscard]] std::vector<Row> struck_joint_rows() const {
+    std::vector<Row> rows;
+    for (ActingJoint<Real, Dim> joint : joints_) {
+      if (joint.motor != MotorMode::none && std::isfinite(joint.joint.motor->most)) joint.motor = MotorMode::none;
+      JointConstraints<Real, Dim>(joint, bodies_[joint.a], bodies_[joint.b], rows).add();
+    }
+    add_locks(rows);
+    return rows;
+  }
+  /// The row of a limit: see JointConstraints.
+  [[nodiscard]] Row limit_row(const JointLimit& of) const {
+    const auto& joint = joints_[of.joint];
+    std::vector<Row> none;
+    return JointConstraints<Real, Dim>(joint, bodies_[joint.a], bodies_[joint.b], none).limit(of.side);
   }
 
   /// The forces that were found last: of contact k along its normal; what the row across its pair does; of a joint on
@@ -251,29 +271,45 @@ class RigidSystem {
       if (rows_[r].direction == V{}) load.torque += rows_[r].lever_b * force_of_row_[r];
     }
     if (has_motor_row) load.motor = force_of_row_[last - 1];
-    if (const Real effort = driving_effort(joints_[j]); effort != Real(0)) {
-      const Row row = coordinate_of(joints_[j]);
+    const auto add = [&load](const Row& row, const Real& effort) {
       load.force += row.direction * effort;
       if (row.direction == V{}) load.torque += row.lever_b * effort;
+    };
+    if (const Real effort = driving_effort(joints_[j]); effort != Real(0)) {
+      add(driven_row(joints_[j]), effort);
       load.motor = effort;
     }
+    push_by_springs(joints_[j], bodies_.data(), add);
     return load;
+  }
+  /// What a joint bears, of what it can.
+  [[nodiscard]] Real strain(std::size_t j) const {
+    const Joint<Real, Dim>& joint = joints_[j].joint;
+    const JointLoad load = load_of(j);
+    const auto share = [](const Real& of, const Real& most) {
+      return most > Real(0) ? of / most : of > Real(0) ? std::numeric_limits<Real>::infinity() : Real(0);
+    };
+    return std::max(share(length(load.force), joint.breaks_at), share(length(load.torque), joint.breaks_at_torque));
+  }
+  /// With what force the limit of a joint pushes that holds it on one side.
+  [[nodiscard]] Real push_of_limit(std::size_t j) const {
+    const bool has_motor_row = joints_[j].motor == MotorMode::keeps_speed;
+    return force_of_row_[first_row_of_[j + 1] - (has_motor_row ? 2 : 1)];
   }
   /// @}
   /// Finds all forces anew, with the shortest of all where they are not determined.
   void find_shortest_forces(Real t, const X& state) {
-    kept_.clear();
+    const std::vector<std::size_t> kept = std::exchange(kept_, {});
     evaluate(t, state);
+    kept_ = kept;
   }
   /// The row of the coordinate that a motor drives.
-  [[nodiscard]] Row coordinate_of(const ActingJoint<Real, Dim>& joint) const {
+  [[nodiscard]] Row driven_row(const ActingJoint<Real, Dim>& joint) const {
     std::vector<Row> none;
-    Row row = JointConstraints<Real, Dim>(joint, bodies_[joint.a], bodies_[joint.b], none).coordinate();
-    row.a = joint.a, row.b = joint.b;
-    return row;
+    return JointConstraints<Real, Dim>(joint, bodies_[joint.a], bodies_[joint.b], none).driven();
   }
   [[nodiscard]] Real motor_rate(std::size_t j) const {
-    return coordinate_of(joints_[j]).rate_of(bodies_[joints_[j].a], bodies_[joints_[j].b]);
+    return driven_row(joints_[j]).rate_of(bodies_[joints_[j].a], bodies_[joints_[j].b]);
   }
 
  private:
@@ -323,11 +359,14 @@ class RigidSystem {
     torque_[row.b] += (row.lever_b + row.rub_lever_b) * force;
     torque_[row.a] -= (row.lever_a + row.rub_lever_a) * force;
   }
-  /// Forces and torques without those of joints and contacts, but with those of motors that do not keep their speed.
+  /// Forces and torques without those of joints and contacts, but with those of springs, and of motors that do not keep
+  /// their speed.
   void find_forces(Real t) {
     find_loads(t);
-    for (const auto& joint : joints_)
-      if (const Real effort = driving_effort(joint); effort != Real(0)) push(coordinate_of(joint), effort);
+    for (const auto& joint : joints_) {
+      if (const Real effort = driving_effort(joint); effort != Real(0)) push(driven_row(joint), effort);
+      push_by_springs(joint, bodies_.data(), [this](const Row& row, const Real& force) { push(row, force); });
+    }
   }
   void find_accelerations() {
     linear_.assign(bodies_.size(), {}), angular_.assign(bodies_.size(), {});
@@ -454,7 +493,25 @@ class RigidSystem {
         contact.slip = direction_of_slip(contact, place_of(contact.feature, a, b), a, b);
       }
     }
+    add_locks(rows_);
   }
+  /// A row to the world for each direction in which a body is held. What a body has left that way is taken from it.
+  void note_locks(std::uint32_t k, std::span<const Body> all) {
+    const Locked locked = world_->traits(numbers_[k]).locked;
+    const auto note = [&](Locked bit, auto member, std::size_t axis) {
+      if (!has(locked, bit)) return;
+      Row& row = locks_.emplace_back();
+      row.a = local(static_cast<std::uint32_t>(all.size() - 1), all), row.b = k;
+      (row.*member)[axis] = Real(1);
+    };
+    note(Locked::x, &Row::direction, 0), note(Locked::y, &Row::direction, 1);
+    if constexpr (Dim == 3) {
+      note(Locked::z, &Row::direction, 2);
+      note(Locked::turn_x, &Row::lever_b, 0), note(Locked::turn_y, &Row::lever_b, 1);
+    }
+    note(Locked::turn_z, &Row::lever_b, S::size() - 1);
+  }
+  void add_locks(std::vector<Row>& rows) const { rows.insert(rows.end(), locks_.begin(), locks_.end()); }
   void factor(std::span<const Row> rows) {
     const std::size_t n = rows.size();
     matrix_.resize(n * n);
@@ -521,6 +578,7 @@ class RigidSystem {
       if (world_->has_traits() && world_->traits(numbers_[k]).spin_damping != Real(0)) continue;
       const auto meets = [&](const auto& one) { return one.a == k || one.b == k; };
       if (std::ranges::any_of(joints_, meets) || std::ranges::any_of(contacts_, meets)) continue;
+      if (std::ranges::any_of(locks_, meets)) continue;
       bodies_[k].energy = known.value_or(dot(bodies_[k].momentum, bodies_[k].spin));
     }
   }
@@ -551,6 +609,7 @@ class RigidSystem {
   bool whole_;
   std::vector<ActingJoint<Real, Dim>> joints_;
   std::vector<ActingContact<Real, Dim>> contacts_;
+  std::vector<Row> locks_;         // directions in which bodies are held
   std::vector<std::size_t> kept_;  // the rows that are solved; empty: all
   bool begins_ = false;
   // Of the present state:

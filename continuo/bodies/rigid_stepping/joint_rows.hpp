@@ -246,13 +246,17 @@ void add_distance(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, con
   rows.drive(joint, distance, joint.length, along);
 }
 
+template <class Real, int Dim>
+[[nodiscard]] JointSpring<Real> spring_of_pull(const Joint<Real, Dim>& joint) {
+  return joint.spring.value_or(JointSpring<Real>{.hertz = Real(5), .damping = Real(0.7)});
+}
 /// A pull has a row for each axis. Where its spring would take more than the greatest force, the limits of the rows are
 /// the components of that force, so that it points to the target and is as great as it may be.
 template <class Real, int Dim>
 void add_pull(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, const JointFrame<Real, Dim>& frame,
               const RigidBody<Real, Dim>& b, const Real& h) {
   constexpr std::array<JointRow, 3> kinds{JointRow::hold_0, JointRow::hold_1, JointRow::hold_2};
-  const JointSpring<Real> spring = joint.spring.value_or(JointSpring<Real>{.hertz = Real(5), .damping = Real(0.7)});
+  const JointSpring<Real> spring = spring_of_pull(joint);
   const Softness<Real> soft = softness(spring.hertz, spring.damping, h);
   const Vector<Real, Dim> error = b.x + frame.arm_b - joint.target;
   const Vector<Real, Dim> wish = error * soft.rate + b.velocity_at(frame.arm_b);  // velocity to be taken away
