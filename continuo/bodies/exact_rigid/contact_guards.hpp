@@ -130,7 +130,9 @@ class ContactGuards {
                (of_b ? other.feature.point_b : other.feature.point_a) == one.in_body;
       };
       if (std::ranges::any_of(system.contacts(), touches)) continue;
-      one.is_held = gap_of(system, one) <= near_;
+      const Real gap = gap_of(system, one);
+      if (gap < -near_) continue;  // beside the face
+      one.is_held = gap <= near_;
       corners_.push_back(one);
     }
   }
