@@ -52,6 +52,8 @@ class ContactGuards {
     small_.assign(last_.size(), small);
     for (std::size_t k = 0; k < corners_.size(); ++k)
       if (corners_[k].is_held) small_[first_corner_ + k] = drift_;
+    for (std::size_t i = 0; i < first_corner_; ++i)  // what was allowed where the contacts were chosen
+      if (last_[i] > -100 * small) small_[i] = std::max(small_[i], -2 * last_[i]);
     allow_slow_slips(system);
     armed_.resize(last_.size());
     for (std::size_t i = 0; i < last_.size(); ++i) armed_[i] = last_[i] > small_[i];
@@ -175,6 +177,7 @@ class ContactGuards {
   }
   [[nodiscard]] std::vector<Real> values(System& system, const Real& t, const X& state) {
     system.evaluate(t, state);
+    system.share_forces();
     std::vector<Real> all;
     const auto contacts = system.contacts();
     for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -194,10 +197,8 @@ class ContactGuards {
       all.push_back(drift_ - gap), all.push_back(pair.overlap + gap);
     }
     add_motors(system, all);
-    for (std::size_t j = 0; j < system.joints().size(); ++j) {
-      const LimitSide held = system.joints()[j].held;
-      if (held == LimitSide::lower || held == LimitSide::upper) all.push_back(system.push_of_limit(j) / force_);
-    }
+    for (std::size_t j = 0; j < system.joints().size(); ++j)
+      if (is_held_on_one_side(system.joints()[j])) all.push_back(system.push_of_limit(j) / force_);
     const auto breaks = [](const auto& joint) { return has_strength(joint.joint); };
     if (!std::ranges::any_of(system.joints(), breaks)) return all;
     system.find_shortest_forces(t, state);

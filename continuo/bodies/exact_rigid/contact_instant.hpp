@@ -298,8 +298,12 @@ class ContactInstant {
       rows.clear();
       for (const std::size_t k : points) {
         const Point& at = points_[k];
-        problem.contacts.push_back({.friction = at.material.friction});
+        problem.contacts.push_back({.friction = at.limit ? Real(0) : at.material.friction});
         rows.push_back(row_of(k));
+        if (at.limit) {
+          rows.insert(rows.end(), 2, nothing_across(at));
+          continue;
+        }
         for (const Moved& tangent : tangents(Moved{at.normal, {}})) {
           Row row = row_along(body(at.a), body(at.b), tangent, Moved{at.place, {}});
           row.a = at.a, row.b = at.b;
@@ -346,14 +350,21 @@ class ContactInstant {
     std::vector<std::array<V, 2>> across;
     for (const std::size_t k : closed_) {
       const Point& at = points_[k];
+      rows.push_back(lasting_row(k, false));
+      if (at.limit) {
+        rows.insert(rows.end(), 2, nothing_across(at));
+        across.emplace_back();
+        problem.contacts.push_back({.friction = Real(0)});
+        continue;
+      }
       const ContactPlace<Real, Dim> place = place_of(*at.feature, body(at.a), body(at.b));
-      rows.push_back(normal_row(place, body(at.a), body(at.b)));
       std::array<Real, 2> slip{};
       for (std::size_t i = 0; i < 2; ++i) {
-        rows.push_back(tangent_rows(place, body(at.a), body(at.b))[i]);
-        slip[i] = rows.back().rate_of(body(at.a), body(at.b));
+        Row row = tangent_rows(place, body(at.a), body(at.b))[i];
+        row.a = at.a, row.b = at.b;
+        slip[i] = rate_of(row);
+        rows.push_back(row);
       }
-      for (std::size_t i = rows.size() - 3; i < rows.size(); ++i) rows[i].a = at.a, rows[i].b = at.b;
       across.push_back({rows[rows.size() - 2].direction, rows.back().direction});
       ConeContact<Real> contact{.friction = at.material.friction};
       const Real speed = std::hypot(slip[0], slip[1]);

@@ -70,6 +70,11 @@ struct ActingJoint {
   bool breaks = false;  // at this instant
 };
 
+template <class Real, int Dim>
+[[nodiscard]] bool is_held_on_one_side(const ActingJoint<Real, Dim>& joint) {
+  return joint.held == LimitSide::lower || joint.held == LimitSide::upper;
+}
+
 /// Why the exact motion does not move a world with this joint; a success where it does.
 template <class Real, int Dim>
 [[nodiscard]] Status check_exactly_movable(const Joint<Real, Dim>& joint) {

@@ -905,7 +905,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     group.watched.erase(std::ranges::unique(group.watched).begin(), group.watched.end());
     const bool may_change = std::ranges::any_of(system.joints(), [](const auto& joint) {
       return (joint.motor != MotorMode::none && joint.joint.motor->most < never) || has_strength(joint.joint) ||
-             joint.held == LimitSide::lower || joint.held == LimitSide::upper;
+             is_held_on_one_side(joint);
     });
     if (group.watched.empty() && !may_change) return;
     Real force(0), speed(0);

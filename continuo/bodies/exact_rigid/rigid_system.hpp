@@ -179,6 +179,14 @@ class RigidSystem {
   [[nodiscard]] Real impulse(const X& state, std::size_t k) const { return state[moving_ * stride + k]; }
   [[nodiscard]] std::span<const ActingJoint<Real, Dim>> joints() const { return joints_; }
   [[nodiscard]] std::span<const ActingContact<Real, Dim>> contacts() const { return contacts_; }
+  /// After `evaluate`: where the equations do not determine the forces, as those along the floor of two feet that stick
+  /// to it, finds those of contacts and limits that are the shortest, as where these were chosen.
+  void share_forces() {
+    if (rubs_in_space() || kept_.empty() || kept_.size() == rows_.size()) return;
+    MinimumNorm<Real> shortest;
+    std::vector<Real> matrix;
+    find_shared_forces(matrix, shortest);
+  }
   /// Finds how the bodies would move without the forces of joints and contacts.
   void find_free_motion(Real t) {
     find_forces(t);
@@ -231,7 +239,7 @@ class RigidSystem {
     if (rows_.empty()) return true;
     if (!rubs_in_space()) return system_.determinant_sign() >= 0;
     constexpr Real lift = std::is_same_v<Real, float> ? Real(1e-3) : Real(1e-6);
-    const std::size_t n = rows_.size() - first_row_of_.back();
+    const auto n = static_cast<std::size_t>(std::ranges::count(one_sided_rows(), true));
     std::vector<Real> lifted = matrix_;
     for (std::size_t i = 0; i < n; ++i) lifted[i * n + i] *= 1 + lift;
     MinimumNorm<Real> system;
@@ -292,10 +300,7 @@ class RigidSystem {
     return std::max(share(length(load.force), joint.breaks_at), share(length(load.torque), joint.breaks_at_torque));
   }
   /// With what force the limit of a joint pushes that holds it on one side.
-  [[nodiscard]] Real push_of_limit(std::size_t j) const {
-    const bool has_motor_row = joints_[j].motor == MotorMode::keeps_speed;
-    return force_of_row_[first_row_of_[j + 1] - (has_motor_row ? 2 : 1)];
-  }
+  [[nodiscard]] Real push_of_limit(std::size_t j) const { return force_of_row_[row_of_limit(j)]; }
   /// @}
   /// Finds all forces anew, with the shortest of all where they are not determined.
   void find_shortest_forces(Real t, const X& state) {
@@ -319,6 +324,10 @@ class RigidSystem {
       const auto put = [&](const auto& vector) { to = std::ranges::copy(vector.components, to).out; };
       put(bodies_[k].x), put(bodies_[k].v), put(bodies_[k].orientation), put(bodies_[k].momentum);
     }
+  }
+  [[nodiscard]] std::size_t row_of_limit(std::size_t j) const {
+    const bool has_motor_row = joints_[j].motor == MotorMode::keeps_speed;
+    return first_row_of_[j + 1] - (has_motor_row ? 2 : 1);
   }
   static void normalize(Body& body) {
     body.orientation = turned(body.orientation, S{}, Real(0));
@@ -381,7 +390,11 @@ class RigidSystem {
     force_of_row_.assign(rows_.size(), Real(0));
     if (rows_.empty()) return;
     find_accelerations();
-    if (rubs_in_space()) return share_forces();
+    if (rubs_in_space()) {
+      find_shared_forces(matrix_, system_);
+      for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], force_of_row_[r]);
+      return;
+    }
     std::vector<Row>& solved = chosen_;
     solved.clear();
     if (kept_.empty()) {
@@ -398,26 +411,34 @@ class RigidSystem {
       push(solved[k], wanted_[k]);
     }
   }
-  /// Forces of contacts in space that are not determined are the least that hold, whatever the joints do: as those with
-  /// which the contacts were chosen (FrictionCones).
-  void share_forces() {
-    const std::size_t joints = first_row_of_.back();
-    const std::span<const Row> all(rows_);
-    ReducedContacts<Real, Dim> reduced(bodies_.data(), all.first(joints), all.subspan(joints));
-    matrix_.assign(reduced.matrix().begin(), reduced.matrix().end());
-    wanted_.clear();
-    for (const Row& row : rows_) wanted_.push_back(free_acceleration(row));
-    const auto middle = wanted_.begin() + static_cast<std::ptrdiff_t>(joints);
-    const std::vector<Real> of_joints(wanted_.begin(), middle);
-    std::vector<Real> forces = reduced.rates(of_joints, {middle, wanted_.end()});
-    for (Real& force : forces) force = -force;
-    system_.factor(forces.size(), matrix_);
-    system_.solve(forces);
-    const std::vector<Real> answers = reduced.answers(of_joints, forces);
+  /// The rows that only push: of contacts, and of limits that hold a joint on one side.
+  [[nodiscard]] std::vector<bool> one_sided_rows() const {
+    std::vector<bool> is_one_sided(rows_.size(), false);
+    if (!normal_of_.empty())
+      std::fill(is_one_sided.begin() + static_cast<std::ptrdiff_t>(normal_of_.front()),
+                is_one_sided.end() - static_cast<std::ptrdiff_t>(locks_.size()), true);
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      if (is_held_on_one_side(joints_[j])) is_one_sided[row_of_limit(j)] = true;
+    return is_one_sided;
+  }
+  /// Of forces that are not determined, the least of contacts and limits that hold, whatever the joints do: as those
+  /// with which the contacts were chosen. `matrix` becomes that of the rows that only push, decomposed in `shortest`.
+  void find_shared_forces(std::vector<Real>& matrix, MinimumNorm<Real>& shortest) {
+    const std::vector<bool> is_one_sided = one_sided_rows();
+    std::vector<Row> joints, contacts;
+    std::vector<Real> of_joints, of_contacts, forces;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      force_of_row_[r] = r < joints ? answers[r] : forces[r - joints];
-      push(rows_[r], force_of_row_[r]);
+      (is_one_sided[r] ? contacts : joints).push_back(rows_[r]);
+      (is_one_sided[r] ? of_contacts : of_joints).push_back(free_acceleration(rows_[r]));
     }
+    ReducedContacts<Real, Dim> reduced(bodies_.data(), joints, contacts);
+    matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+    for (const Real& rate : reduced.rates(of_joints, of_contacts)) forces.push_back(-rate);
+    shortest.factor(contacts.size(), matrix);
+    shortest.solve(forces);
+    const std::vector<Real> answers = reduced.answers(of_joints, forces);
+    for (std::size_t r = 0, joint = 0, contact = 0; r < rows_.size(); ++r)
+      force_of_row_[r] = is_one_sided[r] ? forces[contact++] : answers[joint++];
   }
 
   // Constraints.
@@ -451,6 +472,7 @@ class RigidSystem {
         add_rows_in_space(contact, at, row, with_rubbing);
       }
     }
+    add_locks(rows_);
   }
   [[nodiscard]] bool rubs_in_space() const {
     return Dim == 3 && std::ranges::any_of(contacts_, [](const auto& one) { return one.rubbing != Rubbing::none; });
@@ -493,7 +515,6 @@ class RigidSystem {
         contact.slip = direction_of_slip(contact, place_of(contact.feature, a, b), a, b);
       }
     }
-    add_locks(rows_);
   }
   /// A row to the world for each direction in which a body is held. What a body has left that way is taken from it.
   void note_locks(std::uint32_t k, std::span<const Body> all) {
