@@ -86,7 +86,8 @@ class BodiesPanel {
   }
   double nearness(std::size_t body) const {
     if (world_.dimension == 2) return 0;
-    return coordinate(body, 0, last_row()) + coordinate(body, 1, last_row()) + coordinate(body, 2, last_row());
+    return nearness_in_space(coordinate(body, 0, last_row()), coordinate(body, 1, last_row()),
+                             coordinate(body, 2, last_row()));
   }
 
   void add_ways() {
@@ -110,7 +111,7 @@ class BodiesPanel {
     std::vector<model::NodeId> nodes;
     for (const model::BodyDescription& body : world_.bodies) nodes.push_back(body.radius);
     const std::vector<double> radii = evaluate(model_, nodes, run_.plan.variables);
-    const double size = world_.dimension == 2 ? 1 : std::sqrt(1.5);  // of a unit of length, as seen
+    const double size = world_.dimension == 2 ? 1 : size_in_space;  // of a unit of length, as seen
     std::vector<Seen> all(world_.bodies.size());
     for (std::size_t i = 0; i < all.size(); ++i)
       all[i] = {place(i, last_row()), radii[i] * size, nearness(i), i, color_of_body(i)};
@@ -131,7 +132,7 @@ class BodiesPanel {
     std::vector<std::size_t> order(world_.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(nearness(i), i); });
-    const double size = world_.dimension == 2 ? 1 : std::sqrt(1.5);
+    const double size = world_.dimension == 2 ? 1 : size_in_space;
     for (const std::size_t i : order) {
       if (shapes.bodies[i].form == worlds::no_form) {
         const Flat at = place(i, last_row());
@@ -147,7 +148,6 @@ class BodiesPanel {
   void add_form(std::size_t body, const worlds::BodyForm& form) {
     Curve area{.label = "", .x = {}, .y = {}, .color = std::string(color_of_body(body)), .style = Curve::Style::area};
     area.fill = 0.8;
-    const double side = world_.dimension == 2 ? 1 : -1;  // pictures of space have x on the right: they are mirrored
     for (const std::vector<std::uint32_t>& face : form.faces) {
       double twice = 0;  // the area as seen: above 0 where it looks at us
       std::vector<Flat> corners;
@@ -156,7 +156,7 @@ class BodiesPanel {
         const Flat &a = corners[k], &b = corners[(k + 1) % corners.size()];
         twice += a[0] * b[1] - a[1] * b[0];
       }
-      if (!(twice * side > 0)) continue;
+      if (!(twice > 0)) continue;
       corners.push_back(corners.front());
       for (const Flat& at : corners) area.x.push_back(at[0]), area.y.push_back(at[1]);
       area.x.push_back(NAN), area.y.push_back(NAN);

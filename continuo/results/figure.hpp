@@ -117,14 +117,21 @@ inline constexpr double least_tolerances_of_axis = 100;
 /// What of a closed path without gaps lies in a rectangle.
 [[nodiscard]] Curve clipped(const Curve& path, Range x, Range y);
 
-/// Where a point of space is seen in the plane of a picture: from above the corner, along (-1, -1, -1).
+/// Where a point of space is seen in the plane of a picture: from above the corner, along (-1, 1, -1). So x leads to
+/// the right and towards us, y to the right and away, z upwards, and all three axes are as long.
 [[nodiscard]] inline double right_in_space(double x, double y) {
-  return (x - y) * 0.86602540378443864676;  // sqrt(3/4)
+  return (x + y) * 0.86602540378443864676;  // sqrt(3/4)
 }
 /// Its other coordinate there.
 [[nodiscard]] inline double up_in_space(double x, double y, double z) {
-  return z - (x + y) / 2;
+  return z + (y - x) / 2;
 }
+/// The larger, the nearer to us.
+[[nodiscard]] inline double nearness_in_space(double x, double y, double z) {
+  return x - y + z;
+}
+/// Of a unit of length across the line of sight, in the picture.
+inline constexpr double size_in_space = 1.2247448713915890;  // sqrt(3/2)
 
 /// A curve of many points without those that no eye can tell apart on a picture `pixels` wide. Peaks stay.
 [[nodiscard]] Curve thinned(const Curve& curve, std::size_t pixels);

@@ -1,5 +1,6 @@
 // The picture of a world at the end of a run, from rows made by hand.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -104,21 +105,42 @@ TEST(BodiesPanel, ShowsBodiesAsLargeAsTheyAreAndTheirWays) {
   EXPECT_EQ(panel.curves[5].label, "other");
 }
 
-// Seen along (-1, -1, -1) a large body hides a small one behind it, but not the one beside it. Two distant bodies
+// Seen along (-1, 1, -1) a large body hides a small one behind it, but not the one beside it. Two distant bodies
 // determine the extent of the picture.
 TEST(BodiesPanel, InSpaceLeavesOutWhatIsHidden) {
   const model::Model model = model_of(
-      "world { dimension 3\nbody hidden at (-5, -5, -5) radius 0.5\nbody beside at (-5, -5, 0) radius 0.5\n"
-      "body large at (0, 0, 0) radius 2\nbody before at (5, 5, 5) radius 1 }\nrun 0..1\n");
+      "world { dimension 3\nbody hidden at (-5, 5, -5) radius 0.5\nbody beside at (-5, 5, 0) radius 0.5\n"
+      "body large at (0, 0, 0) radius 2\nbody before at (5, -5, 5) radius 1 }\nrun 0..1\n");
   const Panel panel = bodies_panel(model, moved_by_one(model));
   const Curve& discs = discs_of(panel);
-  // From far to near; the place of (x, y, z) is sqrt(3/4) (x - y), z - (x + y)/2.
+  // From far to near; the place of (x, y, z) is sqrt(3/4) (x + y), z + (y - x)/2.
   const double shift = std::sqrt(0.75);
   ASSERT_EQ(discs.x.size(), 3u);
   for (const double x : discs.x) EXPECT_NEAR(x, shift, 1e-14);
   EXPECT_THAT(discs.y, ElementsAre(4.5, -0.5, -0.5));
   EXPECT_NEAR(discs.discs[1].radius, 2 * std::sqrt(1.5), 1e-14);
   EXPECT_NEAR(discs.discs[2].radius, std::sqrt(1.5), 1e-14);
+}
+
+// What turns to the left in space turns to the left in its picture: right, up and towards us are a right-handed system,
+// perpendicular to each other and as long as they say.
+TEST(BodiesPanel, DoesNotMirrorSpace) {
+  const std::array<std::array<double, 3>, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  std::array<std::array<double, 3>, 3> seen;  // right, up, near
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& [x, y, z] = axes[k];
+    seen[0][k] = right_in_space(x, y), seen[1][k] = up_in_space(x, y, z), seen[2][k] = nearness_in_space(x, y, z);
+  }
+  const auto dot = [](const auto& a, const auto& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto& [right, up, near] = seen;
+  const std::array<double, 3> turn{right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2],
+                                   right[0] * up[1] - right[1] * up[0]};
+  EXPECT_GT(dot(turn, near), 0);
+  EXPECT_NEAR(dot(right, up), 0, 1e-15);
+  EXPECT_NEAR(dot(right, near), 0, 1e-15);
+  EXPECT_NEAR(dot(up, near), 0, 1e-15);
+  EXPECT_NEAR(dot(right, right), size_in_space * size_in_space, 1e-15);
+  EXPECT_NEAR(dot(up, up), size_in_space * size_in_space, 1e-15);
 }
 
 TEST(BodiesPanel, SoManyAreDots) {

@@ -63,7 +63,7 @@ Flat BodyPictures::flat(const Point& p) const {
 }
 
 double BodyPictures::radius_of(std::size_t i) const {
-  return shapes_[i].radius * (dimension_ == 2 ? 1 : size_in_space);
+  return shapes_[i].radius * (dimension_ == 2 ? 1 : results::size_in_space);
 }
 
 void BodyPictures::take(const live::Bodies& bodies, PictureFrame& frame) {
@@ -137,7 +137,8 @@ std::vector<Flat> BodyPictures::wall_in_space(const worlds::WallShape& wall) con
 
 void BodyPictures::draw_walls(const PictureFrame& frame, PictureParts& parts) const {
   for (const worlds::WallShape& wall : walls_) {
-    const bool faces_away = dimension_ == 3 && !(nearness_of(wall.normal[0], wall.normal[1], wall.normal[2]) > 0);
+    const bool faces_away =
+        dimension_ == 3 && !(results::nearness_in_space(wall.normal[0], wall.normal[1], wall.normal[2]) > 0);
     if (faces_away && !wall.thin) continue;  // it would hide what is before us
     std::vector<Flat> shown = dimension_ == 2 ? wall_in_plane(wall, frame) : wall_in_space(wall);
     if (shown.size() < 3) continue;
@@ -264,7 +265,7 @@ std::string BodyPictures::polyhedron(const live::Bodies& bodies, std::size_t i) 
     Point normal =
         turned_by(bodies, i, {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
     const double size = std::sqrt(dot(normal, normal));
-    if (!(size > 0) || !(nearness_of(normal[0], normal[1], normal[2]) > 0)) continue;
+    if (!(size > 0) || !(results::nearness_in_space(normal[0], normal[1], normal[2]) > 0)) continue;
     const double lit = dot(normal, sun) / size;
     const std::uint32_t color = lit_by(color_of(i), lit);
     for (std::size_t k = 0; k <= face.size(); ++k) {
@@ -290,7 +291,7 @@ std::string BodyPictures::sphere(const live::Bodies& bodies, std::size_t i) cons
   if (shapes_.size() > few) return text;
   for (const double side : {0.87, -0.87}) {
     const Point pole = turned(&bodies.orientation[4 * i], {side, 0, 0});
-    if (!(nearness_of(pole[0], pole[1], pole[2]) > 0)) continue;
+    if (!(results::nearness_in_space(pole[0], pole[1], pole[2]) > 0)) continue;
     const double r = shapes_[i].radius;
     text += circle(flat({p[0] + r * pole[0], p[1] + r * pole[1], p[2] + r * pole[2]}), 0.13 * radius,
                    mixed(color, black, 0.7));
@@ -304,7 +305,7 @@ void BodyPictures::draw_in_space(const live::Bodies& bodies, PictureParts& parts
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) {
     const Point p = place(bodies, i);
-    return nearness_of(p[0], p[1], p[2]);
+    return results::nearness_in_space(p[0], p[1], p[2]);
   });
   std::string text;
   bool are_spheres = true;

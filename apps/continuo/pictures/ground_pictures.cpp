@@ -45,14 +45,14 @@ void GroundPictures::add(const worlds::StaticMeshShape& mesh, std::size_t facet)
   for (std::size_t k = 0; k < 3; ++k) {
     at[k] = mesh.corners[mesh.facets[facet][k]];
     made.corners[k] = flat_of(at[k][0], at[k][1], at[k][2]);
-    made.nearness += nearness_of(at[k][0], at[k][1], at[k][2]);
+    made.nearness += results::nearness_in_space(at[k][0], at[k][1], at[k][2]);
     frame_.take(made.corners[k], 0);
   }
   const auto& [a, b, c] = at;
   const Point u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - b[0], c[1] - b[1], c[2] - b[2]};
   Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   const double size = std::sqrt(dot(normal, normal));
-  const bool is_front = nearness_of(normal[0], normal[1], normal[2]) > 0;
+  const bool is_front = results::nearness_in_space(normal[0], normal[1], normal[2]) > 0;
   for (double& component : normal) component *= (is_front ? 1 : -1) / size;
   made.normal = normal, made.offset = dot(normal, a);
   made.color = is_front || mesh.thin ? lit_by(0xD9D9D9, dot(normal, sun)) : still;

@@ -9,7 +9,7 @@
 namespace continuo::app {
 
 inline constexpr std::uint32_t white = 0xFFFFFF, black = 0x000000, still = 0x8A8A8A;  // still: what does not move
-inline constexpr worlds::Point sun = {-0.150, 0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left
+inline constexpr worlds::Point sun = {-0.150, -0.418, 0.896};  // 0.67 of the way to us, 0.62 up, 0.4 to the left
 inline constexpr std::string_view edge_color = "#8a8a8a";
 inline constexpr std::string_view as_polygons = "using 1:2:3 with filledcurves closed fc rgb variable";
 

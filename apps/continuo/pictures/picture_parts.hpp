@@ -9,21 +9,16 @@
 
 #include <fmt/format.h>
 
+#include <continuo/results/figure.hpp>
+
 namespace continuo::app {
 
 struct Flat {
   double x, y;
 };
 
-// A scene in space is seen from above its corner, along (-1, -1, -1): all three axes are as long.
-inline constexpr double size_in_space = 1.2247448713915890;  // sqrt(3/2), of a unit of length in the picture
-
 inline Flat flat_of(double x, double y, double z) {
-  return {(x - y) * std::sqrt(0.75), z - (x + y) / 2};
-}
-/// The larger, the nearer.
-inline double nearness_of(double x, double y, double z) {
-  return x + y + z;
+  return {results::right_in_space(x, y), results::up_in_space(x, y, z)};
 }
 
 /// The part of the plane that is shown.

@@ -41,7 +41,7 @@ class Drawn {
   /// Of a ball in space too: as large as a sphere of that radius looks.
   double radius(const live::SceneItem& item, std::size_t frame) const {
     const live::SceneNumbers* at = find(item, "at");
-    const double seen = at && at->places.size() == 3 ? size_in_space : 1;
+    const double seen = at && at->places.size() == 3 ? results::size_in_space : 1;
     return seen * value(item, "radius", frame, 0.1);
   }
   const live::LiveModel& shown() const { return shown_; }
