@@ -31,6 +31,7 @@ struct TouchingPoint {
   std::optional<ContactFeature<Real, Dim>> feature{};
   Real gap{};
   std::optional<JointLimit> limit{};
+  Real slow{};  // of a limit: what parts no faster than this may be held by it
 };
 
 template <class Real, int Dim>
@@ -160,7 +161,8 @@ class ContactInstant {
     return points_[k].material.restitution < Real(1) || points_[k].material.friction > Real(0);
   }
   [[nodiscard]] Real slow_of(std::size_t k) const {
-    return std::max(Real(16 * rounding_of(k)), loses(k) && !points_[k].limit ? slow_ : Real(0));
+    const Real slow = points_[k].limit ? points_[k].slow : slow_;
+    return std::max(Real(16 * rounding_of(k)), loses(k) ? slow : Real(0));
   }
   [[nodiscard]] std::vector<Real> joint_rates(const std::vector<Row>& joints) const {
     std::vector<Real> rates;

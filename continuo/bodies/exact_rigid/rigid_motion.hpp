@@ -539,6 +539,8 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     Real pull(0);
     for (std::uint32_t k = 0; k < instant.moving(); ++k) pull = std::max(pull, length(instant.linear(k)));
     for (const Point& point : points) pull = std::max(pull, pull_at(instant, point));
+    for (Point& point : points)
+      if (point.limit) point.slow = pull * contact_time_ / arm_of(instant.joints()[point.limit->joint], instant);
     Real noise(0);
     for (const std::uint32_t i : bodies)
       noise = std::max(noise, Real(4 * options_.tolerance *
@@ -735,6 +737,11 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     MotionRow<Real, Dim> row = normal_row(place_of(*point.feature, a, b), a, b);
     row.a = point.a, row.b = point.b;
     return std::abs(instant.free_acceleration(row));
+  }
+  /// What makes an angular velocity a velocity; 1 where the coordinate of a joint is a length.
+  [[nodiscard]] Real arm_of(const ActingJoint<Real, Dim>& joint, const System& instant) const {
+    if (joint.joint.kind != JointKind::hinge) return Real(1);
+    return std::max(reach_of(instant.numbers()[joint.a]), reach_of(instant.numbers()[joint.b]));
   }
   /// Whether bodies are farther in each other at a point than rounding puts them.
   [[nodiscard]] bool is_deep(const System& instant, const Point& point) const {
