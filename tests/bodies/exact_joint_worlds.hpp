@@ -144,10 +144,10 @@ class ExactJointWorld : public ExactWorld<Dim> {
   [[nodiscard]] double compliance(const Driven& of, std::size_t i) const {
     if (i == none) return 0;
     const V axis = direction(of.a, of.axis);
-    const JointKind kind = world.find(of.joint)->kind;
+    const JointKind of_joint = world.find(of.joint)->kind;
     const auto inverse_inertia = turned_inertia(axes(i), inverse(world.inertia(i)));
-    if (kind == JointKind::distance) return world.inverse_mass[i];
-    if (kind == JointKind::hinge) {
+    if (of_joint == JointKind::distance) return world.inverse_mass[i];
+    if (of_joint == JointKind::hinge) {
       if constexpr (Dim == 2) {
         return inverse_inertia[0][0];
       } else {

@@ -503,7 +503,10 @@ TEST(ExactJoints, AnImpactDoesNotBreakAJoint) {
     ExactMotion motion(world);
     advance(motion, 1);
     EXPECT_EQ(world.find(weld)->is_broken, strength < 20);
-    if (strength < 20) EXPECT_NEAR(world.velocity[0][1], -10 * (1 - std::sqrt(0.2)), 1e-9);
+    // It broke as the other box came to rest on it, and falls from rest.
+    if (strength < 20) {
+      EXPECT_NEAR(world.velocity[0][1], -10 * (1 - std::sqrt(0.2)), 1e-9);
+    }
   }
 }
 // A hook lets go of a body, which then falls on it.
