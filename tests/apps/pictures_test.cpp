@@ -211,8 +211,8 @@ TEST(Pictures, GroundHidesWhatIsBehindIt) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Shell shell;
   shell.write("wall.obj", "v 5 -1 0\nv -1 5 0\nv -1 5 4\nv 5 -1 4\nf 1 2 3 4\n");
-  const auto colored = [&](const std::string& ball, const std::string& wall) {
-    shell.write("wall.sim", "world { dimension 3\n mode fast step 1/60\n" + wall + " body ball at " + ball +
+  const auto colored = [&](const std::string& place, const std::string& wall) {
+    shell.write("wall.sim", "world { dimension 3\n mode fast step 1/60\n" + wall + " body ball at " + place +
                                 " radius 0.4\n body other at (5, -1, -3) radius 0.1 fixed }\nrun 0..0.1 realtime\n");
     EXPECT_EQ(shell.run("run wall.sim --plot wall.gif").exit, 0);
     GifReader gif(shell.read("wall.gif"));
