@@ -206,16 +206,17 @@ TEST(Pictures, AFilmShowsLittleOfWhatIsBelowAFloor) {
 }
 
 // A wall of two triangles hides the ball behind it, half of the one that looks out beside it, and nothing of the ball
-// before it, though the middle of each triangle is as near to us as that of the last one.
+// before it.
 TEST(Pictures, GroundHidesWhatIsBehindIt) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Shell shell;
-  shell.write("wall.obj", "v 5 -1 0\nv -1 5 0\nv -1 5 4\nv 5 -1 4\nf 1 2 3 4\n");
+  shell.write("wall.obj", "v 5 1 0\nv -1 -5 0\nv -1 -5 4\nv 5 1 4\nf 1 2 3 4\n");
   const auto colored = [&](const std::string& place, const std::string& wall) {
     shell.write("wall.sim", "world { dimension 3\n mode fast step 1/60\n" + wall + " body ball at " + place +
-                                " radius 0.4\n body other at (5, -1, -3) radius 0.1 fixed }\nrun 0..0.1 realtime\n");
+                                " radius 0.4\n body other at (5, 1, -3) radius 0.1 fixed }\nrun 0..0.1 realtime\n");
     EXPECT_EQ(shell.run("run wall.sim --plot wall.gif").exit, 0);
     GifReader gif(shell.read("wall.gif"));
+    EXPECT_GE(gif.pictures(), 1);
     std::size_t blue = 0;
     for (std::size_t y = 0; y < gif.height; ++y)
       for (std::size_t x = 0; x < gif.width; ++x) {
@@ -225,10 +226,10 @@ TEST(Pictures, GroundHidesWhatIsBehindIt) {
     return blue;
   };
   const std::string wall = " wall it mesh \"wall.obj\" thin\n";
-  const std::size_t whole = colored("(3, 3, 2)", wall), hidden = colored("(1, 1, 2)", wall);
+  const std::size_t whole = colored("(3, -3, 2)", wall), hidden = colored("(1, -1, 2)", wall);
   EXPECT_GT(whole, 300U);
   EXPECT_EQ(hidden, 0U);
-  const std::size_t part = colored("(4, -2, 2)", wall);  // at the edge of the wall, and behind it
+  const std::size_t part = colored("(4, 2, 2)", wall);  // at the edge of the wall, and behind it
   EXPECT_GT(part, whole / 4);
   EXPECT_LT(part, whole * 3 / 4);
 }
