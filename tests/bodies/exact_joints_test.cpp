@@ -602,5 +602,45 @@ TEST(ExactJoints, HeldDirectionsStay) {
   EXPECT_NEAR(space.spin[0][0], 0, 1e-14);
 }
 
+// A ball that cannot turn slides over a rough floor, straight until its rope is taut, then around the end of that,
+// until friction has taken its speed: limits, friction in space and held directions at once.
+TEST(ExactJoints, ABallSlidesAroundOnItsRopeOverARoughFloor) {
+  constexpr double friction = 0.3, g = 10, radius = 0.2, speed = 3, begin = 0.5;
+  World<double, 3> world;
+  world.gravity = {{0, 0, -g}};
+  const Material<double> rough{.friction = friction};
+  require(world.add_wall({.normal = {{0, 0, 1}}, .material = rough}));
+  const auto ball = require(world.add({.shape = Compound<double, 3>{{{.shape = Sphere<double>{radius}}}},
+                                       .position = {{begin, 0, radius}},
+                                       .velocity = {{0, speed, 0}},
+                                       .material = rough}));
+  require(world.set_traits(ball, {.locked = both(both(Locked::turn_x, Locked::turn_y), Locked::turn_z)}));
+  const auto rope = require(world.add_joint({.kind = JointKind::distance,
+                                             .b = ball,
+                                             .anchor = {{0, 0, radius}},
+                                             .anchor_b = world.position[0],
+                                             .limits = JointLimits<double>{.upper = 1}}));
+  const double way = std::sqrt(1 - begin * begin);
+  const double at_end = std::sqrt(speed * speed - 2 * friction * g * way), taut = (speed - at_end) / (friction * g);
+  const double around = at_end * begin;  // what the rope leaves of it
+  const double angle = std::atan2(way, begin), stop = taut + around / (friction * g);
+  ExactMotion motion(world);
+  advance(motion, taut - 1e-3);
+  EXPECT_NEAR(world.position[0][1], way - at_end * 1e-3 - friction * g * 1e-6 / 2, 1e-11);
+  EXPECT_EQ(length(world.find(rope)->force), 0);
+  for (const double part : {0.2, 0.6, 0.95}) {
+    const double t = part * (stop - taut), phi = angle + around * t - friction * g * t * t / 2;
+    advance(motion, taut + t);
+    EXPECT_NEAR(world.position[0][0], std::cos(phi), 1e-9);
+    EXPECT_NEAR(world.position[0][1], std::sin(phi), 1e-9);
+    EXPECT_NEAR(world.position[0][2], radius, 1e-12);
+    EXPECT_NEAR(length(world.velocity[0]), around - friction * g * t, 1e-8);
+  }
+  advance(motion, stop + 1);
+  const double phi = angle + around * around / (2 * friction * g);
+  EXPECT_NEAR(world.position[0][0], std::cos(phi), 1e-8);
+  EXPECT_NEAR(world.position[0][1], std::sin(phi), 1e-8);
+  EXPECT_LT(length(world.velocity[0]), 1e-12);
+}
 }  // namespace
 }  // namespace continuo::exact_joints_test
