@@ -1,6 +1,7 @@
 // Characters see the world as it is after a step; they are the last of it to move.
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <continuo/worlds/characters.hpp>

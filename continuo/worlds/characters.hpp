@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <continuo/bodies/character.hpp>
 #include <continuo/bodies/world.hpp>
 #include <continuo/language/model.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 

@@ -10,7 +10,6 @@ class Characters {
  public:
   Characters(Expressions& expressions, WorldAtWork& work)
       : expressions_(expressions),
-        report_(expressions.report),
         graph_(expressions.workspace.graph),
         text_(expressions.workspace.declared.world),
         work_(work),
@@ -26,7 +25,6 @@ class Characters {
   [[nodiscard]] Measured speed_unit() const;
 
   Expressions& expressions_;
-  Report& report_;
   Graph& graph_;
   const WorldText& text_;
   WorldAtWork& work_;
