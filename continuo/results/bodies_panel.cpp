@@ -60,7 +60,7 @@ class BodiesPanel {
     const std::string when = fmt::format("at {} = {:.4g}{}", columns[0].name, run_.motion.row(last_row())[0],
                                          columns[0].unit.empty() ? "" : " " + columns[0].unit);
     const bool is_flat = world_.dimension == 2;
-    panel_.x_label = is_flat ? label_of(axis(0)) + ", " + when : when + ", seen along (-1, -1, -1)";
+    panel_.x_label = is_flat ? label_of(axis(0)) + ", " + when : when + ", seen along (-1, 1, -1)";
     panel_.y_label = is_flat ? label_of(axis(1)) : "";
     panel_.equal_scale = true;
     panel_.no_numbers = !is_flat;

@@ -1,5 +1,5 @@
 // The bodies of a world where they are at the end of a run, with the ways of a few: in the plane as they lie, in space
-// seen along (-1, -1, -1), the nearer before the farther.
+// seen along (-1, 1, -1), the nearer before the farther.
 #pragma once
 #include <continuo/language/model.hpp>
 #include <continuo/results/figure.hpp>
