@@ -33,6 +33,8 @@ class ContactGuards {
   using V = Vector<Real, Dim>;
   using X = std::vector<Real>;
   using System = RigidSystem<Real, Dim>;
+  /// What a guard that begins at 0 may fall by; of gaps, in units of the size.
+  static constexpr Real small = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-10);
 
   /// Corners nearer to the face than `near` times the size of their body may stay there, where what is in contact holds
   /// them. A contact has left its feature where the gap is more than `drift` times the size.
@@ -87,7 +89,6 @@ class ContactGuards {
   }
 
  private:
-  static constexpr Real small = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-10);
   struct Corner {
     std::uint32_t contact = 0;
     V in_body{};

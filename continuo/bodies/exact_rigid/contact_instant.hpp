@@ -345,7 +345,7 @@ class ContactInstant {
     }
   }
   /// Up to this speed a slip is none but for errors.
-  [[nodiscard]] Real least_slip(std::size_t k) const { return std::max(Real(slow_of(k) / 10'000), noise_); }
+  [[nodiscard]] Real least_slip(std::size_t k) const { return std::max(rounding_of(k), noise_); }
   [[nodiscard]] Status choose_in_space() {
     std::vector<Row> rows;
     ConeProblem<Real> problem;
@@ -390,7 +390,7 @@ class ContactInstant {
         one.slip = across[k][0] * found->slips[k][0] + across[k][1] * found->slips[k][1];
         const Real least = least_slip(closed_[k]);
         (problem.contacts[k].slip ? one.ends_below : one.steady_below) =
-            problem.contacts[k].slip ? least / 2 : std::max(Real(10 * least), Real(slow_of(closed_[k]) / 100));
+            problem.contacts[k].slip ? least / 2 : 100 * least;
       }
       lasting_.push_back(one);
     }

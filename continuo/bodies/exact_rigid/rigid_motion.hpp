@@ -541,11 +541,15 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     for (const Point& point : points) pull = std::max(pull, pull_at(instant, point));
     for (Point& point : points)
       if (point.limit) point.slow = pull * contact_time_ / arm_of(instant.joints()[point.limit->joint], instant);
-    Real noise(0);
-    for (const std::uint32_t i : bodies)
-      noise = std::max(noise, Real(4 * options_.tolerance *
-                                   (length(bodies_[i].v) + (1 + length(bodies_[i].spin)) * world_.radius[i])));
-    ContactInstant<Real, Dim> resolver(instant, points, Real(pull * contact_time_), noise);
+    Real noise = pull * contact_time_ / 10'000, reach(0);
+    for (const std::uint32_t i : bodies) {
+      const Real fastest = length(bodies_[i].v) + (1 + length(bodies_[i].spin)) * world_.radius[i];
+      noise = std::max(noise, Real(4 * options_.tolerance * fastest)), reach = std::max(reach, world_.radius[i]);
+    }
+    // What falls as far as a guard lets it would bounce for ever, if its speed were no less than those of impacts.
+    constexpr Real dip = std::is_same_v<Real, float> ? Real(0) : ContactGuards<Real, Dim>::small;
+    const Real least_fall = 2 * std::sqrt(2 * pull * dip * reach);
+    ContactInstant<Real, Dim> resolver(instant, points, std::max(Real(pull * contact_time_), least_fall), noise);
     Status status = resolver.strike([&](std::size_t k, const Real& impulse) {
       if (impulse > Real(0)) note_impact(instant, points[k], impulse);
     });
