@@ -213,54 +213,58 @@ class FrictionCones {
   /// With pyramids of eight sides as cones: of each contact a normal force, and of each that may stick eight forces
   /// across and a slip (see FrictionModes::try_pivots).
   [[nodiscard]] std::optional<Trial> pivot(bool by_chance) {
-    constexpr std::size_t sides = 8, most_unknowns = 600;
-    Trial trial = empty_trial();
+    constexpr std::size_t most_unknowns = 600;
+    const Trial trial = empty_trial();
     std::vector<std::size_t> first;
     std::size_t n = 0;
     for (std::size_t k = 0; k < points_; ++k)
       first.push_back(n), n += closed_mode(k) == ConeMode::sticks ? sides + 2 : 1;
     if (n > most_unknowns) return {};
-    std::array<std::array<Real, 2>, sides> side;
-    for (std::size_t s = 0; s < sides; ++s) {
-      const Real angle = 2 * std::numbers::pi_v<Real> * (static_cast<Real>(s) + Real(0.1)) / sides;
-      side[s] = {std::cos(angle), std::sin(angle)};
-    }
-    // What a unit of an unknown does to the rate of a row, and a row to the row of an unknown.
     std::vector<Real> m(n * n), q(n), cover(n, Real(1)), changes(all_);
     for (std::size_t k = 0; k < points_; ++k) {
       const bool is_whole = closed_mode(k) == ConeMode::sticks;
       for (std::size_t u = 0; u < (is_whole ? sides + 1 : 1); ++u) {
         for (std::size_t row = 0; row < all_; ++row)
-          changes[row] = u > 0 ? side[u - 1][0] * entry(row, 3 * k + 1) + side[u - 1][1] * entry(row, 3 * k + 2)
-                               : entry(row, 3 * k) + (is_whole ? Real(0) : sliding_change(trial, row, k));
-        const std::size_t column = (first[k] + u) * n;
-        for (std::size_t j = 0; j < points_; ++j) {
-          m[column + first[j]] = changes[3 * j];
-          if (closed_mode(j) != ConeMode::sticks) continue;
-          for (std::size_t s = 0; s < sides; ++s)
-            m[column + first[j] + 1 + s] = side[s][0] * changes[3 * j + 1] + side[s][1] * changes[3 * j + 2];
-        }
+          changes[row] = u > 0      ? along_side(u - 1, entry(row, 3 * k + 1), entry(row, 3 * k + 2))
+                         : is_whole ? entry(row, 3 * k)
+                                    : entry(row, 3 * k) + sliding_change(trial, row, k);
+        put_on_sides(changes, first, std::span(m).subspan((first[k] + u) * n, n));
       }
-      q[first[k]] = b_[3 * k];
       if (!is_whole) continue;
       const std::size_t slip = first[k] + sides + 1;
       m[first[k] * n + slip] = of_.contacts[k].friction;
-      for (std::size_t s = 0; s < sides; ++s) {
-        q[first[k] + 1 + s] = side[s][0] * b_[3 * k + 1] + side[s][1] * b_[3 * k + 2];
-        m[(first[k] + 1 + s) * n + slip] = Real(-1), m[slip * n + first[k] + 1 + s] = Real(1);
-      }
+      for (std::size_t u = first[k] + 1; u < slip; ++u) m[u * n + slip] = Real(-1), m[slip * n + u] = Real(1);
     }
+    put_on_sides(b_, first, q);
     if (by_chance)
       for (Real& part : cover) part += static_cast<Real>(chance_()) / static_cast<Real>(std::minstd_rand::max());
     const auto z = Lemke<Real>(m, q, cover).solve();
-    if (!z) return {};
+    return z ? std::optional(trial_of_pivots(trial, first, *z)) : std::nullopt;
+  }
+  static constexpr std::size_t sides = 8;
+  /// The part of a vector across the normal that is along a side of the pyramid.
+  [[nodiscard]] static Real along_side(std::size_t side, const Real& p, const Real& q) {
+    const Real angle = 2 * std::numbers::pi_v<Real> * (static_cast<Real>(side) + Real(0.1)) / sides;
+    return std::cos(angle) * p + std::sin(angle) * q;
+  }
+  /// The rates of all rows as those along normals and sides.
+  void put_on_sides(std::span<const Real> rates, const std::vector<std::size_t>& first, std::span<Real> to) const {
     for (std::size_t k = 0; k < points_; ++k) {
-      const Real normal = (*z)[first[k]];
-      trial.modes[k] = normal > Real(0) ? closed_mode(k) : ConeMode::open;
-      if (trial.modes[k] != ConeMode::sticks || !((*z)[first[k] + sides + 1] > Real(0))) continue;
+      to[first[k]] = rates[3 * k];
+      if (closed_mode(k) != ConeMode::sticks) continue;
+      for (std::size_t s = 0; s < sides; ++s) to[first[k] + 1 + s] = along_side(s, rates[3 * k + 1], rates[3 * k + 2]);
+    }
+  }
+  [[nodiscard]] Trial trial_of_pivots(Trial trial, const std::vector<std::size_t>& first,
+                                      const std::vector<Real>& z) const {
+    for (std::size_t k = 0; k < points_; ++k) {
+      trial.modes[k] = z[first[k]] > Real(0) ? closed_mode(k) : ConeMode::open;
+      if (trial.modes[k] != ConeMode::sticks || !(z[first[k] + sides + 1] > Real(0))) continue;
       std::array<Real, 2> force{};
-      for (std::size_t s = 0; s < sides; ++s)
-        for (std::size_t i = 0; i < 2; ++i) force[i] += (*z)[first[k] + 1 + s] * side[s][i];
+      for (std::size_t s = 0; s < sides; ++s) {
+        force[0] += z[first[k] + 1 + s] * along_side(s, Real(1), Real(0));
+        force[1] += z[first[k] + 1 + s] * along_side(s, Real(0), Real(1));
+      }
       trial.modes[k] = ConeMode::slips;
       trial.angles[k] = std::atan2(-force[1], -force[0]);
     }
@@ -313,60 +317,58 @@ class FrictionCones {
   }
   /// Newton's method for the angles of slips that begin; with each its forces.
   void find_angles(Trial& trial) {
+    constexpr int most_rounds = 60;
+    constexpr auto most_turn = Real(0.6);
     std::vector<std::size_t> turning;
     for (std::size_t k = 0; k < points_; ++k)
       if (begins_to_slip(trial, k)) turning.push_back(k);
-    find_forces(trial);
-    trial.is_stable = is_stable();
-    trial.is_solved = meets_equations(trial);
-    if (turning.empty()) return;
-    constexpr int most_rounds = 60;
     const std::size_t n = turning.size();
-    std::vector<Real> matrix(n * n), change(n), turned(rows_.size());
+    std::vector<Real> matrix, change(n);
     MinimumNorm<Real> angles;
     Real before = std::numeric_limits<Real>::infinity();
-    for (int round = 0; round < most_rounds; ++round) {
-      Real greatest(0);
+    find_forces(trial);
+    for (int round = 0; n > 0 && round < most_rounds; ++round) {
+      Real greatest(0), most(0);
       for (std::size_t i = 0; i < n; ++i) {
         change[i] = slip_rates(trial, turning[i])[0];
         greatest = std::max(greatest, std::abs(change[i]));
       }
-      for (std::size_t j = 0; j < n; ++j) {
-        const std::size_t of = turning[j];
-        for (std::size_t r = 0; r < rows_.size(); ++r) turned[r] = -turning_change(trial, rows_[r], of);
-        system_.solve(turned);
-        for (std::size_t i = 0; i < n; ++i) {
-          const std::size_t k = turning[i];
-          const auto along = [&](auto&& rate_of) {
-            return std::cos(trial.angles[k]) * rate_of(3 * k + 2) - std::sin(trial.angles[k]) * rate_of(3 * k + 1);
-          };
-          Real slope = along([&](std::size_t row) {
-            Real sum = turning_change(trial, row, of);
-            for (std::size_t r = 0; r < rows_.size(); ++r) {
-              const std::size_t column = rows_[r];
-              const bool slips = trial.modes[column / 3] == ConeMode::slips;
-              sum += turned[r] * (entry(row, column) + (slips ? sliding_change(trial, row, column / 3) : Real(0)));
-            }
-            return sum;
-          });
-          if (i == j) slope -= slip_rates(trial, k)[1];
-          matrix[j * n + i] = -slope;
-        }
-      }
-      angles.factor(n, matrix);
+      matrix = turning_matrix(trial, turning);
       if (greatest < small / 1000 && !(greatest < before / 2)) break;
       before = greatest;
+      angles.factor(n, matrix);
       angles.solve(change);
-      Real most(0);
       for (const Real& turn : change) most = std::max(most, std::abs(turn));
-      const Real part = most > Real(0.6) ? Real(0.6) / most : Real(1);
-      for (std::size_t i = 0; i < n; ++i) trial.angles[turning[i]] += part * change[i];
-      find_forces(trial);
       if (most == Real(0)) break;
+      for (std::size_t i = 0; i < n; ++i)
+        trial.angles[turning[i]] += change[i] * std::min(Real(1), Real(most_turn / most));
+      find_forces(trial);
     }
     trial.is_solved = meets_equations(trial);
-    trial.is_stable = is_stable();
-    if (trial.is_stable) trial.is_stable = is_positive(n, matrix);
+    trial.is_stable = is_positive(rows_.size(), sub_) && is_positive(n, matrix);
+  }
+  /// How fast the rate across a slip falls (rows) where a slip turns (columns), with the forces that follow.
+  [[nodiscard]] std::vector<Real> turning_matrix(const Trial& trial, const std::vector<std::size_t>& turning) {
+    const std::size_t n = turning.size();
+    std::vector<Real> matrix(n * n), forces(rows_.size()), rates(all_);
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t row = 0; row < all_; ++row) rates[row] = turning_change(trial, row, turning[j]);
+      for (std::size_t r = 0; r < rows_.size(); ++r) forces[r] = -rates[rows_[r]];
+      system_.solve(forces);
+      for (std::size_t r = 0; r < rows_.size(); ++r) {
+        const bool slips = trial.modes[rows_[r] / 3] == ConeMode::slips;
+        for (std::size_t row = 0; row < all_; ++row)
+          rates[row] +=
+              forces[r] * (entry(row, rows_[r]) + (slips ? sliding_change(trial, row, rows_[r] / 3) : Real(0)));
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t k = turning[i];
+        const Real along = i == j ? slip_rates(trial, k)[1] : Real(0);
+        matrix[j * n + i] =
+            along + std::sin(trial.angles[k]) * rates[3 * k + 1] - std::cos(trial.angles[k]) * rates[3 * k + 2];
+      }
+    }
+    return matrix;
   }
   /// Equations that depend on each other can contradict each other.
   [[nodiscard]] bool meets_equations(const Trial& trial) const {
@@ -378,7 +380,6 @@ class FrictionCones {
     }
     return true;
   }
-  [[nodiscard]] bool is_stable() const { return is_positive(rows_.size(), sub_); }
   /// Whether the determinant is above 0, but for what of it is 0.
   [[nodiscard]] static bool is_positive(std::size_t n, std::vector<Real> matrix) {
     MinimumNorm<Real> lifted;
