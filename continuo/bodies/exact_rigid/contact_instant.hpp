@@ -331,18 +331,23 @@ class ContactInstant {
         pair.may_stick = std::abs(slip) <= slow;
         pair.may_go_forwards = slip >= -slow, pair.may_go_backwards = slip <= slow;
       }
-      const std::vector<Row> joints = system_.joint_rows();
-      ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
-      problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
-      problem.rates = reduced.rates(accelerations(joints), accelerations(rows));
-      const bool moves = std::ranges::any_of(problem.rates, [](const Real& rate) { return rate != Real(0); });
-      if (!moves) return {};
+      if (!take_motion(problem, rows)) return {};
       const auto found = FrictionModes<Real>(problem).solve();
       if (!found) return jammed();
       for (std::size_t k = 0; k < closed_.size(); ++k)
         if (found->presses[k]) lasting_.push_back({closed_[k], found->rubbing[problem.pair_of_point[k]], {}, {}});
       return {};
     }
+  }
+  /// Gives a problem of forces the responses of these rows and their accelerations without forces. False where all of
+  /// them are 0.
+  template <class Problem>
+  [[nodiscard]] bool take_motion(Problem& problem, const std::vector<Row>& rows) const {
+    const std::vector<Row> joints = system_.joint_rows();
+    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
+    problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
+    problem.rates = reduced.rates(accelerations(joints), accelerations(rows));
+    return std::ranges::any_of(problem.rates, [](const Real& rate) { return rate != Real(0); });
   }
   /// Up to this speed a slip is none but for errors.
   [[nodiscard]] Real least_slip(std::size_t k) const { return std::max(rounding_of(k), noise_); }
@@ -373,12 +378,7 @@ class ContactInstant {
       if (speed > least_slip(k)) contact.slip = {slip[0] / speed, slip[1] / speed};
       problem.contacts.push_back(contact);
     }
-    const std::vector<Row> joints = system_.joint_rows();
-    ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
-    problem.matrix.assign(reduced.matrix().begin(), reduced.matrix().end());
-    problem.rates = reduced.rates(accelerations(joints), accelerations(rows));
-    const bool moves = std::ranges::any_of(problem.rates, [](const Real& rate) { return rate != Real(0); });
-    if (!moves) return {};
+    if (!take_motion(problem, rows)) return {};
     const auto found = FrictionCones<Real>(problem).solve();
     if (!found) return jammed();
     for (std::size_t k = 0; k < closed_.size(); ++k) {
