@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exact_steps.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/status/require.hpp>
 
@@ -25,15 +26,7 @@ using V3 = Vector<double, 3>;
 using Wide = long double;
 constexpr double pi = std::numbers::pi, g = 9.81;
 
-template <int Dim>
-void advance(ExactMotion<double, Dim>& motion, double t) {
-  const Status status = motion.advance_to(t);
-  ASSERT_TRUE(status) << describe(status);
-}
-template <int Dim>
-double energy(const World<double, Dim>& world) {
-  return kinetic_energy(world) + potential_energy(world);
-}
+using test::advance, test::energy;
 /// A ball that moves as the other shapes do.
 Compound<double, 3> ball(double radius) {
   Compound<double, 3> made;

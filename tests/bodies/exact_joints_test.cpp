@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exact_steps.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/status/require.hpp>
 
@@ -19,11 +20,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-template <int Dim>
-void advance(ExactMotion<double, Dim>& motion, double t) {
-  const Status status = motion.advance_to(t);
-  ASSERT_TRUE(status) << describe(status);
-}
+using test::advance;
 /// A vector along axis i, in the plane and in space.
 template <int Dim>
 Vector<double, Dim> along(std::size_t i, double size) {

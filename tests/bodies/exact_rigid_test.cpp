@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exact_steps.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/shapes/manifold.hpp>
@@ -27,15 +28,7 @@ using V3 = Vector<double, 3>;
 constexpr double pi = std::numbers::pi, never = std::numeric_limits<double>::infinity();
 constexpr Material<double> smooth{.restitution = 0, .friction = 0}, elastic{.restitution = 1, .friction = 0};
 
-template <int Dim>
-void advance(ExactMotion<double, Dim>& motion, double t) {
-  const Status status = motion.advance_to(t);
-  ASSERT_TRUE(status) << describe(status);
-}
-template <int Dim>
-double energy(const World<double, Dim>& world) {
-  return kinetic_energy(world) + potential_energy(world);
-}
+using test::advance, test::energy;
 /// y'' = f(y, y') after T, by the classical Runge-Kutta method.
 template <class F>
 std::array<double, 2> integrated(double y, double v, double duration, F f) {

@@ -7,22 +7,19 @@
 
 #include <gtest/gtest.h>
 
+#include "exact_steps.hpp"
 #include "exact_worlds.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 
 namespace continuo::random_exact_motion_test {
 namespace {
 
-using namespace test;  // exact_worlds.hpp
+using namespace test;  // exact_worlds.hpp and exact_steps.hpp
 
 struct Tally {
   std::size_t finished = 0, stopped = 0, touched = 0;
 };
 
-template <int Dim>
-double energy(const World<double, Dim>& world) {
-  return kinetic_energy(world) + potential_energy(world);
-}
 /// Each state after a call that succeeds is held against the laws. A millionth of a second first brings the velocities
 /// of joined bodies together.
 template <int Dim>
