@@ -144,6 +144,25 @@ class Protocol(unittest.TestCase):
             self.assertAlmostEqual(event["t"], 10 / 7, 9)
             view.close()
 
+    def test_a_state_comes_before_the_pictures_of_its_model(self):
+        """To clients that come at any instant of a run, and to those that are there when another text is run."""
+        with Viewed("spring_pendulum.sim") as viewed:
+            def sees_in_order(view):
+                view.until(said("model"))
+                seen = []
+                view.until(lambda m: seen.append(m) or isinstance(m, Frame))
+                self.assertTrue(any(state(m) for m in seen), seen)
+
+            presenter = View(viewed.address)
+            sees_in_order(presenter)
+            for number in range(20):
+                view = View(viewed.address)
+                sees_in_order(view)
+                view.close()
+                presenter.say("run", text=f"x' = 1\nx(0) = {number}\nrun 0..100\n")
+                sees_in_order(presenter)
+            presenter.close()
+
     def test_a_viewer_sees_and_changes_nothing(self):
         """Each command of the table from a raw client: what the server does not allow, it refuses."""
         with Viewed("pendulum.sim", "--listen", "127.0.0.2", "--paused") as viewed:
@@ -246,7 +265,7 @@ class Protocol(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "heavy.sim")
             with open(path, "w") as file:
-                file.write("param N = 500, k = 1 in 0..2\nfor i in 1..N {\n"
+                file.write("param N = 1000, k = 1 in 0..2\nfor i in 1..N {\n"
                            "  u[i]' = -k*u[i] + 0.5*sin(u[i])*sum(j in 1..N: u[j])/N\n  u[i](0) = 1 + i/N\n}\n"
                            "run 0..100 method radau tol 1e-9\n")
             with Viewed(path) as viewed:

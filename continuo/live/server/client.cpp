@@ -183,6 +183,7 @@ void Client::give(Topic topic, const Text& json) {
     model_ = json;
     state_ = nullptr;  // of the model before, as
     picture_ = false;
+    knows_state_ = false;
   } else if (topic == Topic::state) {
     state_ = json;
   } else {
@@ -226,6 +227,11 @@ void Client::pump() {
     closing_ = false;
     return close();
   }
+  const auto write_state = [&] {
+    knows_state_ = true;
+    write(std::exchange(state_, nullptr), false);
+  };
+  if (state_ && !knows_state_) return write_state();
   const Clock::time_point now = Clock::now();
   const auto interval = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / rate_));
   if (picture_ && now + interval / 4 >= due_) {  // a quarter early rather than a whole picture late
@@ -233,7 +239,7 @@ void Client::pump() {
     due_ = std::max(due_ + interval, now + interval / 2);
     return write(parts_->rows.frame(mark_), true);
   }
-  if (state_) return write(std::exchange(state_, nullptr), false);
+  if (state_) return write_state();
   if (!picture_) return;
   later_.expires_at(due_);
   later_.async_wait([self = shared_from_this()](error_code error) {

@@ -79,6 +79,7 @@ class Client : public std::enable_shared_from_this<Client> {
   std::deque<Text> events_, messages_;
   bool open_ = false, writing_ = false, picture_ = false, waiting_ = false, checking_ = false, gone_ = false;
   bool closing_ = false;
+  bool knows_state_ = false;  // of the model: the first one goes before the pictures, later ones when those leave room
   std::optional<Asked> next_check_;
   Clock::time_point due_{}, tenth_{};
   std::size_t in_tenth_ = 0;

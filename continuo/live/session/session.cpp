@@ -105,7 +105,6 @@ bool Session::begin_run(std::shared_ptr<const LiveModel> shown) {
 
 void Session::reset() {
   begin_run(playback_.shown());
-  say_state();
 }
 
 /// Parameters that decide how many equations there are go into the check itself.
@@ -244,8 +243,10 @@ std::string Session::state_json() const {
   return live::state_json(words);
 }
 
+/// A state belongs to the model that was said last, so a new one follows.
 void Session::say_model() {
   audience_.hear(Topic::model, model_json());
+  say_state();
 }
 
 void Session::say_state() {
