@@ -89,6 +89,8 @@ test("the tour is offered once, and again when asked for", async (t) => {
   for (let stop = 0; stop < 4; ++stop) await tab.locator(".tour").getByRole("button", { name: "Next" }).click();
   await tab.locator(".tour").getByRole("button", { name: "Done" }).click();
   assert.equal(await tab.locator(".tour").count(), 0);
+  // Once the address names the model, the page does not begin with its gallery.
+  await tab.waitForFunction(() => location.hash.includes("model="));
   await tab.reload();
   await tab.getByRole("button", { name: "Gallery", exact: true }).click();
   await tab.locator("dialog[open] .gallery").waitFor();
