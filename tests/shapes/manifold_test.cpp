@@ -107,12 +107,36 @@ void manifolds_of_boxes_are_contacts() {
   const auto find = [](const Pair<Dim>& pair, double margin) {
     const auto half_a = half_sides(pair.a), half_b = half_sides(pair.b);
     for (std::size_t i = 0; i < Dim; ++i) EXPECT_GE(std::min(half_a[i], half_b[i]), 0.05);
-    return manifold_of_boxes(pair.a, pair.b, {half_a, half_b, pair.b_in_a}, margin);
+    return manifold_of_boxes(pair.a, pair.b, {half_a, half_b, pair.b_in_a, std::min(pair.a.reach, pair.b.reach)},
+                             margin);
   };
   manifolds_are_contacts<Dim>(random_box<Dim>, find);
 }
 TEST(Manifold, OfBoxesIsAContactOfLeastOverlap) {
   manifolds_of_boxes_are_contacts<2>(), manifolds_of_boxes_are_contacts<3>();
+}
+// Where the closest points are on faces, the short way for boxes and the one for all polygons have the same points with
+// the same features.
+TEST(Manifold, OfBoxesOfThePlaneIsThatOfPolygons) {
+  int compared = 0;
+  for_random_pairs<2>(20000, random_box<2>, [&](const Pair<2>& pair, std::mt19937&) {
+    const auto general = manifold(pair.a, pair.b, pair.b_in_a, 0.3);
+    const auto of_boxes = manifold_of_boxes(
+        pair.a, pair.b, {half_sides(pair.a), half_sides(pair.b), pair.b_in_a, std::min(pair.a.reach, pair.b.reach)},
+        0.3);
+    ASSERT_EQ(of_boxes.size > 0, general.size > 0);
+    // Of axes that are as good the choice is free.
+    if (general.size == 0 || squared(general.normal - of_boxes.normal) > 1e-20) return;
+    ASSERT_EQ(of_boxes.size, general.size);
+    ++compared;
+    for (const auto& point : general.all()) {
+      const auto same = std::ranges::find(of_boxes.all(), point.feature, &ManifoldPoint<double, 2>::feature);
+      ASSERT_NE(same, of_boxes.all().end());
+      EXPECT_NEAR(same->separation, point.separation, 1e-12);
+      EXPECT_NEAR(length(same->position - point.position), 0, 1e-12);
+    }
+  });
+  EXPECT_GT(compared, 5000);
 }
 TEST(Manifold, KnowsBoxes) {
   std::mt19937 engine(3);

@@ -47,12 +47,14 @@ template <class Real, int Dim>
   return !is_empty(a) && !is_empty(b);
 }
 
-/// Whether bounds that are not empty have no point in common, without a branch, which would be unpredictable for many.
+/// Whether bounds that are not empty have no point in common, or overlap along an axis by less than `depth`. Without a
+/// branch, which would be unpredictable for many.
 template <class Real, int Dim>
-[[nodiscard]] constexpr bool are_apart(const Bounds<Real, Dim>& a, const Bounds<Real, Dim>& b) {
+[[nodiscard]] constexpr bool are_apart(const Bounds<Real, Dim>& a, const Bounds<Real, Dim>& b,
+                                       const Real& depth = static_cast<Real>(0)) {
   bool is_so = false;
   for (std::size_t axis = 0; axis < a.lower.size(); ++axis) {
-    const bool is_above = a.lower[axis] > b.upper[axis], is_below = b.lower[axis] > a.upper[axis];
+    const bool is_above = a.lower[axis] + depth > b.upper[axis], is_below = b.lower[axis] + depth > a.upper[axis];
     is_so |= is_above | is_below;
   }
   return is_so;

@@ -287,7 +287,8 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   }
   template <ManifoldPass pass>
   [[gnu::always_inline]] void solve() {
-    for (std::size_t p = 0; p < head_.points; ++p) resist_sliding(rows_of(p));
+    if constexpr (pass != ManifoldPass::relax_deep)
+      for (std::size_t p = 0; p < head_.points; ++p) resist_sliding(rows_of(p));
     LaneMotion<L, Dim> of_a, of_b;
     if constexpr (pass != ManifoldPass::rebound) {
       of_a = LaneMotion<L, Dim>::load(task_.bodies, numbers_a_, normal_);
@@ -343,6 +344,8 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       } else {
         bias = xsimd::select(is_apart, closing, zero);
       }
+      if constexpr (pass == ManifoldPass::relax_deep)
+        of_mass = xsimd::select(point[At::separation] < L(-task_.deep), one, zero);
     }
     const L speed = dot(normal_, b_.velocity_at(arm_b) - a_.velocity_at(arm_a));
     const L so_far = point[At::impulse];
@@ -372,6 +375,10 @@ template <class L, int Dim>
       return for_each([](auto batch) { batch.template solve<ManifoldPass::push>(); });
     case ManifoldPass::relax:
       return for_each([](auto batch) { batch.template solve<ManifoldPass::relax>(); });
+    case ManifoldPass::relax_deep:
+      for (std::size_t batch = from; batch < to; ++batch)
+        if (here.heads[batch].is_deep) ManifoldBatch<L, Dim>(here, batch).template solve<ManifoldPass::relax_deep>();
+      return;
     case ManifoldPass::rebound:
       for (std::size_t batch = from; batch < to; ++batch)
         if (here.heads[batch].is_meant) ManifoldBatch<L, Dim>(here, batch).template solve<ManifoldPass::rebound>();

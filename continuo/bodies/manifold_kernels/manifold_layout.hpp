@@ -39,15 +39,17 @@ struct BatchHead {
   std::uint8_t points = 0;  // of the manifold with the most
   bool is_a_fixed = false;  // whether some of the bodies a never move: they are not written
   bool is_b_fixed = false;  // likewise
+  bool is_deep = false;     // whether some of the points are
   bool is_meant = true;     // whether the pass of impacts is for some of the manifolds
 };
 
 enum class ManifoldPass : std::uint8_t {
-  prepare,  // replaces the masses of points, 1 where there is one, by those that impulses there meet
-  begin,    // adds the impulses of the last substep
-  push,     // corrects positions as well
-  relax,    // removes the velocity that this gave
-  rebound   // as relax, but `separation` is the normal velocity to be removed
+  prepare,     // replaces the masses of points, 1 where there is one, by those that impulses there meet
+  begin,       // adds the impulses of the last substep
+  push,        // corrects positions as well
+  relax,       // removes the velocity that this gave
+  relax_deep,  // likewise, at those points alone that were deep when the step began, and along their normals
+  rebound      // as relax, but `separation` is the normal velocity to be removed
 };
 
 /// Where a pass acts, and how.
@@ -60,6 +62,7 @@ struct ManifoldTask {
   Real h{};                                        // of the substep
   Real rate{}, of_mass{}, of_impulse{};            // of soft contacts
   Real fastest_push{};
+  Real deep{};  // an overlap of more is
 };
 
 /// Applies a pass to batches from ... to - 1, of which no two share a body that moves.

@@ -164,6 +164,7 @@ template <class L, int Dim>
     case ManifoldPass::push:
       return for_each([](auto batch) { batch.template solve<true>(); });
     case ManifoldPass::relax:
+    case ManifoldPass::relax_deep:
       return for_each([](auto batch) {
         batch.prepare();
         batch.template solve<false>();

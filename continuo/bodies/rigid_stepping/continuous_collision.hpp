@@ -76,9 +76,11 @@ class StoppingTimes {
     for (std::uint32_t i = 0; i < is_fast_.size(); ++i) {
       if (!is_fast_[i]) continue;
       if (can_pass_movers(pairs.parts()[i])) passing_.push_back(static_cast<std::uint32_t>(fast_.size()));
+      passing_slow_ += can_pass_slow(pairs.parts()[i]) ? 1 : 0;
       fast_.push_back(i);
     }
     if (!fast_.empty()) pairs.find_still(bodies);
+    if (passing_slow_ * is_fast_.size() > most_tests) pairs.update_tree();
     if (may_stop()) find_near(team);
   }
 
@@ -120,7 +122,7 @@ class StoppingTimes {
   [[nodiscard]] Bounds<Real, Dim> swept_by(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return grown(united(pairs_.bounds_at(part, part.pose(before(body))), pairs_.bounds_at(part, part.pose(body))),
-                 std::min(way(part), part.convex->reach));
+                 std::min(way(part), part.reach));
   }
   void find_first_contact(const RigidPart<Real, Dim>& part, std::span<const PartPair> near) {
     if (near.empty() && world_.meshes().empty()) return;
@@ -149,7 +151,6 @@ class StoppingTimes {
       for (std::size_t k = from; k < to; ++k) swept_[k] = swept_by(pairs_.parts()[fast_[k]]);
     });
     find_near_fast();
-    auto passing = passing_.begin();
     for (std::uint32_t k = 0; k < fast_.size(); ++k) {
       const auto meet = [&](std::uint32_t j) {
         if (is_fast_[j] || !matters(fast_[k], j)) return;
@@ -157,9 +158,8 @@ class StoppingTimes {
         if (overlap(swept_[k], pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_)))
           near_.push_back({fast_[k], j});
       };
-      if (passing != passing_.end() && *passing == k) {
-        pairs_.tree().for_each_overlap(swept_[k], meet);
-        ++passing;
+      if (passing_slow_ > 0 && can_pass_slow(pairs_.parts()[fast_[k]])) {
+        pairs_.for_each_overlap(swept_[k], meet);
       } else if (!pairs_.still().empty()) {
         pairs_.for_each_still(swept_[k], meet);
       }
@@ -168,23 +168,20 @@ class StoppingTimes {
   }
   /// Pairs of fast parts, of which one can pass others that move, twice.
   void find_near_fast() {
-    constexpr std::size_t most_tests = 1 << 16;  // some 0.1 ms
-    const bool are_few = passing_.size() * fast_.size() <= most_tests;
-    BoundsTree<Real, Dim> tree;
-    if (!are_few) tree.build(swept_);
-    for (const std::uint32_t k : passing_) {
-      const auto meet = [&](std::uint32_t n) {
-        if (!matters(fast_[k], fast_[n])) return;
-        near_.push_back({fast_[k], fast_[n]});
-        if (!can_pass_movers(pairs_.parts()[fast_[n]])) near_.push_back({fast_[n], fast_[k]});
-      };
-      if (!are_few) {
-        tree.for_each_overlap(swept_[k], meet);
-        continue;
-      }
-      for (std::uint32_t n = 0; n < swept_.size(); ++n)
-        if (!are_apart(swept_[k], swept_[n])) meet(n);
-    }
+    if (passing_.empty()) return;
+    std::vector<std::uint8_t> passes(fast_.size());
+    for (const std::uint32_t k : passing_) passes[k] = 1;
+    const auto meet = [&](std::uint32_t k, std::uint32_t n) {
+      if ((passes[k] | passes[n]) == 0 || !matters(fast_[k], fast_[n])) return;
+      near_.push_back({fast_[k], fast_[n]}), near_.push_back({fast_[n], fast_[k]});
+    };
+    constexpr std::size_t most_compared = 200;  // with each, as the pairs of parts
+    SortedBounds<Real, Dim> sorted;
+    if (sorted.sort(swept_, most_compared) &&
+        sorted.for_each_pair(0, sorted.size(), 8 * most_compared * sorted.size(), meet))
+      return;
+    near_.clear();
+    BoundsTree<Real, Dim>(swept_).for_each_pair(meet);
   }
   [[nodiscard]] bool matters(std::uint32_t i, std::uint32_t j) const {
     const auto parts = pairs_.parts();
@@ -227,6 +224,12 @@ class StoppingTimes {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return length(Vector<Real, Dim>(body.x - body.x_before)) > Real(0.999) * part.inner_radius;
   }
+  /// Whether it may pass one that moves and is not fast: the way of that is at most half its inner radius.
+  [[nodiscard]] bool can_pass_slow(const RigidPart<Real, Dim>& part) const {
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    return length(Vector<Real, Dim>(body.x - body.x_before)) >
+           Real(0.999) * (part.inner_radius + pairs_.least_inner_radius() / 2);
+  }
   /// The solver has taken care of those.
   [[nodiscard]] bool has_contact(const RigidPart<Real, Dim>& a, const RigidPart<Real, Dim>& b) const {
     const auto* const first = pairs_.parts().data();
@@ -238,7 +241,7 @@ class StoppingTimes {
   [[nodiscard]] Real way(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return length(Vector<Real, Dim>(body.x - body.x_before)) +
-           length(spin_between(body.orientation_before, body.orientation, step_)) * step_ * part.convex->reach;
+           length(spin_between(body.orientation_before, body.orientation, step_)) * step_ * part.reach;
   }
   [[nodiscard]] bool moves_far(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
@@ -248,6 +251,8 @@ class StoppingTimes {
     if (time < stops_[body].time) stops_[body] = {time, at};
   }
 
+  static constexpr std::size_t most_tests = 1 << 16;  // of bounds, one by one: some 0.1 ms
+
   const World<Real, Dim>& world_;
   const RigidPairs<Real, Dim>& pairs_;
   std::span<const PartContact<Real, Dim>> contacts_;
@@ -256,6 +261,7 @@ class StoppingTimes {
   std::vector<Stop<Real>> stops_;
   std::vector<std::uint8_t> is_fast_;     // of each part
   std::vector<std::uint32_t> fast_;       // the parts that are
+  std::size_t passing_slow_ = 0;          // how many of them can pass slow ones
   std::vector<std::uint32_t> passing_;    // the places there of those that can pass others that move
   std::vector<Bounds<Real, Dim>> swept_;  // by the fast ones
   std::vector<PartPair> near_;            // fast ones, and what they may meet

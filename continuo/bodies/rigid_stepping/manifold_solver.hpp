@@ -51,6 +51,15 @@ class ManifoldSolver {
     task_.rate = soft.rate, task_.of_mass = soft.of_mass, task_.of_impulse = soft.of_impulse;
     task_.fastest_push = fastest_push;
   }
+  /// From which overlap on points are deep.
+  void set_deep(const Real& overlap) {
+    task_.deep = overlap;
+    is_deep_ = false;
+    for (std::size_t batch = 0; batch < heads_.size(); ++batch)
+      is_deep_ |= heads_[batch].is_deep = least_separation_[batch] < -overlap;
+  }
+  /// Whether there are any.
+  [[nodiscard]] bool is_deep() const { return is_deep_; }
   void sweep(ManifoldPass pass) {
     for (std::size_t c = 0; c < ContactColours::most; ++c)
       team_.for_each(lanes_.first(c), lanes_.first(c + 1),
@@ -61,8 +70,6 @@ class ManifoldSolver {
   [[nodiscard]] SolverState<Real, Dim>* states() { return states_.data(); }
   /// The angle in the plane by which a body has turned since the step began.
   [[nodiscard]] Real& angle(std::size_t body) { return angles_[body]; }
-  /// Of all points when the step began.
-  [[nodiscard]] Real least_separation() const { return *std::ranges::min_element(least_separation_); }
   [[nodiscard]] std::size_t colours() const { return colours_.size(); }
 
   /// Gives back the impulses of the last substep, and the greatest ones.
@@ -129,8 +136,7 @@ class ManifoldSolver {
     const std::size_t lanes = kernels_.lanes;
     lanes_.find(colours_, lanes);
     const std::size_t batches = lanes_.batches();
-    heads_.assign(batches, {}),
-        least_separation_.assign(std::max<std::size_t>(batches, 1), std::numeric_limits<Real>::infinity());
+    heads_.assign(batches, {}), least_separation_.assign(batches, std::numeric_limits<Real>::infinity());
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
     values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line) + 1);
@@ -221,7 +227,8 @@ class ManifoldSolver {
   LanesOfColours lanes_;
   LargeArray<Line> values_;  // see manifold_layout.hpp
   std::vector<BatchHead> heads_;
-  std::vector<Real> least_separation_;  // of the points of each batch
+  std::vector<Real> least_separation_;  // of the points of each batch when the step began
+  bool is_deep_ = false;                // whether one of them is
   std::vector<LaneInertia> inertias_;   // the inverse, of all bodies
   std::vector<std::uint32_t> a_, b_;    // bodies of each lane
 };

@@ -42,7 +42,7 @@ class RigidContacts {
     blocks_.resize(std::clamp<std::size_t>(pairs.pairs().size() / 256, 1, 1024));
     team.share(blocks_.size(), [&](std::size_t k) {
       begin_block(k, pairs.pairs());
-      find_in_block(world, pairs, bodies, is_active, k);
+      find_in_block(world, pairs, bodies, step, is_active, k);
     });
     take_blocks(team);
     without_meshes_ = contacts_.size();
@@ -139,7 +139,8 @@ class RigidContacts {
   }
   template <class IsActive>
   void find_in_block(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
-                     std::span<const RigidBody<Real, Dim>> bodies, IsActive&& is_active, std::size_t k) {
+                     std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active,
+                     std::size_t k) {
     Block& block = blocks_[k];
     std::size_t old = block.first;
     const auto lose = [&](PartContact<Real, Dim>& contact) { contact.contact.size = 0, ++block.lost; };
@@ -151,14 +152,15 @@ class RigidContacts {
       const auto [a, b] = bodies_of(pair, world, pairs);
       if (before) before->a = a, before->b = b;
       if (!is_active(a, b)) continue;
-      if (!may_be_near(pair, pairs)) {
+      const Real margin = margin_of(pair, pairs, step);
+      if (!may_be_near(pair, pairs, margin)) {
         if (before) lose(*before);
         continue;
       }
       PartContact<Real, Dim>& now =
           before ? *before
                  : block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
-      update(world, pairs, bodies, now);
+      update(world, pairs, bodies, margin, now);
       if (now.contact.size > 0) continue;
       before ? void(++block.lost) : block.born.pop_back();
     }
@@ -167,15 +169,19 @@ class RigidContacts {
   [[nodiscard]] static std::pair<std::uint32_t, std::uint32_t> bodies_of(const PartPair& pair,
                                                                          const World<Real, Dim>& world,
                                                                          const RigidPairs<Real, Dim>& pairs) {
-    const auto parts = pairs.parts();
-    const auto size = static_cast<std::uint32_t>(parts.size());
-    return {parts[pair.a].body,
-            pair.b < size ? parts[pair.b].body : static_cast<std::uint32_t>(world.size()) + (pair.b - size)};
+    const auto size = static_cast<std::uint32_t>(pairs.parts().size());
+    return {pairs.placed(pair.a).body,
+            pair.b < size ? pairs.placed(pair.b).body : static_cast<std::uint32_t>(world.size()) + (pair.b - size)};
+  }
+  [[nodiscard]] static Real margin_of(const PartPair& pair, const RigidPairs<Real, Dim>& pairs, const Real& step) {
+    if (pair.b >= pairs.parts().size()) return pairs.placed(pair.a).margin;
+    return pairs.margin_between(pair, step);
   }
   /// False where two parts are farther apart than where they have a contact.
-  [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs) {
+  [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs, const Real& margin) {
     if (pair.b >= pairs.parts().size()) return true;
-    return !are_apart(pairs.placed(pair.a).bounds, pairs.placed(pair.b).bounds);
+    const PlacedPart<Real, Dim>&a = pairs.placed(pair.a), &b = pairs.placed(pair.b);
+    return !are_apart(a.bounds, b.bounds, a.margin + b.margin - margin);
   }
   /// Puts the contacts of before that are still there and the new ones into one list.
   void take_blocks(ThreadTeam& team) {
@@ -246,14 +252,14 @@ class RigidContacts {
     });
   }
   static void update(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
-                     std::span<const RigidBody<Real, Dim>> bodies, PartContact<Real, Dim>& found) {
+                     std::span<const RigidBody<Real, Dim>> bodies, const Real& margin, PartContact<Real, Dim>& found) {
     const auto parts = pairs.parts();
     const RigidPart<Real, Dim>& part_a = parts[found.parts.a];
     const bool is_wall = found.parts.b >= parts.size();
     const std::uint32_t wall = is_wall ? found.parts.b - static_cast<std::uint32_t>(parts.size()) : 0;
     const std::uint32_t a = found.a, b = found.b;
-    const Pose<Real, Dim>& pose = pairs.placed(found.parts.a).pose;
-    Real margin = pairs.placed(found.parts.a).margin;
+    const PlacedPart<Real, Dim>& placed_a = pairs.placed(found.parts.a);
+    const Pose<Real, Dim>& pose = placed_a.pose;
     if (is_wall) {
       const Wall<Real, Dim> turned = facing(world.walls()[wall], bodies[a].x);
       const Plane<Real, Dim> plane{pose.local_direction(turned.normal),
@@ -262,13 +268,13 @@ class RigidContacts {
       found.contact = contact_of(touching, pose, margin, bodies[a], bodies[b], &found.contact);
     } else {
       const RigidPart<Real, Dim>& part_b = parts[found.parts.b];
-      margin += pairs.placed(found.parts.b).margin;
-      const Real size = std::min(part_a.convex->reach, part_b.convex->reach);
+      const PlacedPart<Real, Dim>& placed_b = pairs.placed(found.parts.b);
+      const Real size = std::min(placed_a.reach, placed_b.reach);
       if (!follow(found.contact, margin, size, bodies[a], bodies[b])) {
-        const Pose<Real, Dim> b_in_a = relative(pose, pairs.placed(found.parts.b).pose);
+        const Pose<Real, Dim> b_in_a = relative(pose, placed_b.pose);
         const Manifold<Real, Dim> touching =
             part_a.is_box() && part_b.is_box()
-                ? manifold_of_boxes(*part_a.convex, *part_b.convex, {part_a.half, part_b.half, b_in_a}, margin)
+                ? manifold_of_boxes(*part_a.convex, *part_b.convex, {part_a.half, part_b.half, b_in_a, size}, margin)
                 : manifold(*part_a.convex, *part_b.convex, b_in_a, margin);
         found.contact = contact_of(touching, pose, margin, bodies[a], bodies[b], &found.contact);
       }

@@ -2,8 +2,10 @@
 // overlap. Only parts that have left their room are looked up again.
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -12,6 +14,7 @@
 
 #include <continuo/bodies/bounds/bounds_tree.hpp>
 #include <continuo/bodies/bounds/convex_bounds.hpp>
+#include <continuo/bodies/bounds/sorted_bounds.hpp>
 #include <continuo/bodies/meshes/static_mesh.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
 #include <continuo/bodies/support/crowd.hpp>
@@ -33,6 +36,7 @@ struct RigidPart {
   std::uint32_t body = 0;
   const Convex<Real, Dim>* convex = nullptr;
   Pose<Real, Dim> in_body{};
+  Real reach{};              // of the convex body
   Real inner_radius{};       // of a ball around the centre that is within the part
   Vector<Real, Dim> half{};  // the sides, of a box; 0 of others
 
@@ -43,12 +47,16 @@ struct RigidPart {
   }
 };
 
-/// A part at the beginning of a step.
+/// A part at the beginning of a step: what all its pairs ask for, which is one line of the caches in the plane.
 template <class Real, int Dim>
 struct PlacedPart {
   Bounds<Real, Dim> bounds{};  // of where it has contacts
   Pose<Real, Dim> pose{};
-  Real margin{};  // of contacts
+  Vector<Real, Dim> velocity{};  // of its centre
+  Spin<Real, Dim> spin{};
+  Real reach{};
+  Real margin{};  // of contacts, with whatever else
+  std::uint32_t body = 0;
 };
 
 template <class Real, int Dim>
@@ -64,14 +72,18 @@ class RigidPairs {
       solids_.push_back(world.shared_solid(i));
       if (const Solid<Real, Dim>* const solid = world.solid(i)) {
         for (const SolidPart<Real, Dim>& part : solid->parts)
-          parts_.push_back({i, &part.convex, part.in_solid, inner_radius(part.convex), half_sides(part.convex)});
+          parts_.push_back(
+              {i, &part.convex, part.in_solid, part.convex.reach, inner_radius(part.convex), half_sides(part.convex)});
         continue;
       }
       Convex<Real, Dim>& ball = balls_.emplace_back();
       ball.core.corners = {V{}};
       ball.rounding = ball.reach = world.radius[i];
-      parts_.push_back({i, &ball, {}, ball.rounding, {}});
+      parts_.push_back({i, &ball, {}, ball.reach, ball.rounding, {}});
     }
+    least_inner_radius_ = std::numeric_limits<Real>::infinity();
+    for (const RigidPart<Real, Dim>& part : parts_)
+      least_inner_radius_ = std::min(least_inner_radius_, part.inner_radius);
     meshes_.clear();
     for (const WorldMesh<Real, Dim>& mesh : world.meshes()) meshes_.push_back(mesh.geometry);
     first_mesh_ = static_cast<std::uint32_t>(parts_.size() + world.walls().size());
@@ -96,11 +108,31 @@ class RigidPairs {
   }
   /// All parts, by the numbers of their bodies.
   [[nodiscard]] std::span<const RigidPart<Real, Dim>> parts() const { return parts_; }
+  /// Of all parts.
+  [[nodiscard]] const Real& least_inner_radius() const { return least_inner_radius_; }
   /// A part as the last update has seen it.
   [[nodiscard]] const PlacedPart<Real, Dim>& placed(std::uint32_t part) const { return placed_[part]; }
+  /// Surfaces of two parts that are nearer have a contact: as near as their motion against each other may bring them
+  /// within the step, which is that of the smaller one's centre against the other body and its turn against it. Bodies
+  /// that move along together, as in a drum, would else have contacts with all that is near. A part of what each may
+  /// move alone is added: those ahead may be stopped within the step.
+  [[nodiscard]] Real margin_between(const PartPair& pair, const Real& step) const {
+    const PlacedPart<Real, Dim>&a = placed_[pair.a], &b = placed_[pair.b];
+    const PlacedPart<Real, Dim>&small = a.reach < b.reach ? a : b, &large = a.reach < b.reach ? b : a;
+    const V moved = large.velocity + turning(large.spin, V(small.pose.centre - large.pose.centre));
+    const Real speed = length(V(small.velocity - moved));
+    const Real turn = length(Spin<Real, Dim>(small.spin - large.spin)) * small.reach;
+    const Real alone = a.margin + b.margin;
+    return std::min(alone, (speed + turn) * step + (small.reach + large.reach) / 100 + alone * part_of_margin);
+  }
   /// In increasing order.
   [[nodiscard]] std::span<const PartPair> pairs() const { return pairs_; }
-  [[nodiscard]] const BoundsTree<Real, Dim>& tree() const { return tree_; }
+  /// Brings the tree of all parts up to date.
+  void update_tree() {
+    if (!is_tree_stale_) return;
+    tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
+    is_tree_stale_ = false;
+  }
   /// Finds the parts of bodies that do not move.
   void find_still(std::span<const RigidBody<Real, Dim>> bodies) {
     still_before_.swap(still_);
@@ -108,23 +140,33 @@ class RigidPairs {
     for (std::uint32_t i = 0; i < parts_.size(); ++i)
       if (bodies[parts_[i].body].is_fixed()) still_.push_back(i);
     // Where most parts are still, as those of bodies that sleep, and so others than before, the tree of all serves.
-    if (2 * still_.size() > parts_.size()) return tree_of_still_.build({});
+    if (2 * still_.size() > parts_.size()) {
+      update_tree();
+      return tree_of_still_.build({});
+    }
     still_rooms_.clear();
     for (const std::uint32_t i : still_) still_rooms_.push_back(rooms_[i]);
     still_ == still_before_ ? tree_of_still_.refit(still_rooms_) : tree_of_still_.build(still_rooms_);
   }
   /// Those found last, in increasing order.
   [[nodiscard]] std::span<const std::uint32_t> still() const { return still_; }
-  /// Calls visit(part) for those of them whose rooms overlap `box`, and perhaps for others.
+  /// Calls visit(part) for all parts whose rooms overlap `box`. Each is looked at, unless the tree is up to date.
+  template <class Visit>
+  void for_each_overlap(const Bounds<Real, Dim>& box, Visit&& visit) const {
+    if (!is_tree_stale_) return tree_.for_each_overlap(box, visit);
+    for (std::uint32_t i = 0; i < parts_.size(); ++i)
+      if (!are_apart(box, rooms_[i])) visit(i);
+  }
+  /// Calls visit(part) for those that are still and whose rooms overlap `box`, and perhaps for others.
   template <class Visit>
   void for_each_still(const Bounds<Real, Dim>& box, Visit&& visit) const {
     if (tree_of_still_.size() < still_.size()) return tree_.for_each_overlap(box, visit);
     tree_of_still_.for_each_overlap(box, [&](std::uint32_t k) { visit(still_[k]); });
   }
   [[nodiscard]] std::size_t memory() const {
-    return parts_.capacity() * sizeof(parts_[0]) + pairs_.capacity() * sizeof(PartPair) + tree_.memory() +
-           tree_of_still_.memory() + placed_.capacity() * sizeof(placed_[0]) + rooms_.capacity() * sizeof(rooms_[0]) +
-           balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
+    return parts_.capacity() * sizeof(parts_[0]) + pairs_.capacity() * sizeof(PartPair) + sorted_.memory() +
+           tree_.memory() + tree_of_still_.memory() + placed_.capacity() * sizeof(placed_[0]) +
+           rooms_.capacity() * sizeof(rooms_[0]) + balls_.capacity() * (sizeof(balls_[0]) + sizeof(V));
   }
 
   /// An error where there are too many pairs, of which the last update has not listed all.
@@ -136,19 +178,18 @@ class RigidPairs {
               const Real& step, Collide&& collide) {
     find_movers(team, bodies, step);
     if (moved_.empty()) return false;
-    tree_.size() == rooms_.size() && !tree_.rebuild_pays() && !is_new_ ? tree_.refit(rooms_) : tree_.build(rooms_);
-    is_new_ = false;
+    is_tree_stale_ = true;
     const auto may_touch = [&](std::uint32_t i, std::uint32_t j) {
       return parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
     };
     // A search for all pairs has each once, one for those of the parts that have moved some of them twice.
     const bool are_all = moved_.size() * 3 > parts_.size();
-    if (are_all) {
-      pairs_.clear();
-      find_all_pairs(team, may_touch);
-    } else {
-      find_pairs_of_moved(team, may_touch);
+    if (are_all) pairs_.clear();
+    if (!sweep(team, are_all, may_touch)) {
+      update_tree();
+      are_all ? find_all_pairs(team, may_touch) : find_pairs_of_moved(team, may_touch);
     }
+    is_new_ = false;
     for (const std::uint32_t i : moved_) add_walls(world, i);
     if (are_all)
       for (std::uint32_t i = 0; i < parts_.size(); ++i)
@@ -163,6 +204,28 @@ class RigidPairs {
   }
 
  private:
+  /// Finds the pairs of all parts, or of those that have moved, in their order along an axis. False where that is
+  /// slower than to look them up in the tree: there are few, or too many beside each other along the axis.
+  template <class MayTouch>
+  [[nodiscard]] bool sweep(ThreadTeam& team, bool are_all, MayTouch&& may_touch) {
+    if (moved_.size() * 8 < parts_.size() || !sorted_.sort(rooms_, most_compared)) return false;
+    const std::size_t most = most_near_pairs(parts_.size());
+    const std::size_t blocks = std::clamp<std::size_t>(parts_.size() / 64, 1, 256);
+    found_.resize(blocks + 1);
+    std::atomic<bool> is_slow = false;
+    team.share(blocks, [&](std::size_t k) {
+      auto& found = found_[k];
+      found.clear();
+      const std::size_t from = parts_.size() * k / blocks, to = parts_.size() * (k + 1) / blocks;
+      const auto visit = [&](std::uint32_t i, std::uint32_t j) {
+        if ((are_all || has_moved_[i] || has_moved_[j]) && found.size() <= most && may_touch(i, j))
+          found.push_back({std::min(i, j), std::max(i, j)});
+      };
+      if (!sorted_.for_each_pair(from, to, 8 * most_compared * (to - from), visit)) is_slow = true;
+    });
+    found_.back().clear();
+    return !is_slow;
+  }
   template <class MayTouch>
   void find_all_pairs(ThreadTeam& team, MayTouch&& may_touch) {
     const std::size_t most = most_near_pairs(parts_.size());
@@ -204,8 +267,17 @@ class RigidPairs {
     for (const auto& found : found_)
       for (const PartPair& pair : found) new_pairs_[first_pair_[pair.a]++] = pair;
     for (std::size_t i = 0, first = 0; i < parts_.size(); first = first_pair_[i++])
-      std::sort(new_pairs_.begin() + static_cast<std::ptrdiff_t>(first),
-                new_pairs_.begin() + static_cast<std::ptrdiff_t>(first_pair_[i]));
+      sort_few(std::span(new_pairs_).subspan(first, first_pair_[i] - first));
+  }
+  /// The few pairs of one part, by insertion, which is faster there.
+  static void sort_few(std::span<PartPair> pairs) {
+    if (pairs.size() > 32) return static_cast<void>(std::ranges::sort(pairs));
+    for (std::size_t k = 1; k < pairs.size(); ++k) {
+      const PartPair pair = pairs[k];
+      std::size_t at = k;
+      for (; at > 0 && pairs[at - 1].b > pair.b; --at) pairs[at] = pairs[at - 1];
+      pairs[at] = pair;
+    }
   }
   /// Puts the new pairs among those of before of which no part has moved.
   void take_new_pairs() {
@@ -242,7 +314,7 @@ class RigidPairs {
     const Pose<Real, Dim> pose = part.pose(body);
     const Real margin = contact_margin(part, body, step);
     const Bounds<Real, Dim> bounds = grown(bounds_at(part, pose), margin);
-    placed_[i] = {bounds, pose, margin};
+    placed_[i] = {bounds, pose, body.velocity_at(pose.centre - body.x), body.spin, part.reach, margin, part.body};
     if (!is_new_) {
       const bool is_still = body.is_fixed() && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved;
       if (is_still || united(rooms_[i], bounds) == rooms_[i]) return false;
@@ -250,14 +322,15 @@ class RigidPairs {
     rooms_[i] = room(part, body, bounds, step);
     return true;
   }
-  /// Room for some steps at the same velocity.
+  /// Room for some steps at the same velocity. What moves far in a step would leave it all the same: it gets little, as
+  /// each pair costs in each step.
   [[nodiscard]] static Bounds<Real, Dim> room(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
                                               const Bounds<Real, Dim>& bounds, const Real& step) {
-    const Real reach = part.convex->reach, duration = 2 * step;
-    const Bounds<Real, Dim> around =
-        grown(bounds, Real(0.12) * reach + std::min(length(body.spin) * reach * duration, reach));
-    const Real speed = length(body.v);
-    const V way = body.v * (speed * duration > reach ? reach / speed : duration);
+    const Real reach = part.reach, turn = length(body.spin) * reach, speed = length(body.v);
+    if ((speed + turn) * step > reach / 8) return grown(bounds, reach / 100);
+    const Real duration = 2 * step;
+    const Bounds<Real, Dim> around = grown(bounds, Real(0.12) * reach + turn * duration);
+    const V way = body.v * duration;
     return united(around, {around.lower + way, around.upper + way});
   }
   [[nodiscard]] static Bounds<Real, Dim> bounds_of_box(const V& half, const Pose<Real, Dim>& pose) {
@@ -294,16 +367,20 @@ class RigidPairs {
   /// Surfaces that are nearer than the sum of these of both parts have a contact.
   [[nodiscard]] static Real contact_margin(const RigidPart<Real, Dim>& part, const RigidBody<Real, Dim>& body,
                                            const Real& step) {
-    const Real way = (length(body.v) + length(body.spin) * part.convex->reach) * step;
-    return std::min(way, part.convex->reach / 2) + part.convex->reach / 100;
+    const Real way = (length(body.v) + length(body.spin) * part.reach) * step;
+    return std::min(way, part.reach / 2) + part.reach / 100;
   }
 
  private:
+  static constexpr Real part_of_margin = Real(0.25);
+  static constexpr std::size_t most_compared = 200;  // with each part, where that pays
+
   std::vector<RigidPart<Real, Dim>> parts_;
   std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;       // of each body; the parts refer to them
   std::vector<std::shared_ptr<const StaticMesh<Real, Dim>>> meshes_;  // of the world
   std::uint32_t first_mesh_ = 0;
   std::vector<Convex<Real, Dim>> balls_;
+  Real least_inner_radius_{};
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<PlacedPart<Real, Dim>> placed_;
   std::vector<std::uint32_t> moved_;
@@ -313,8 +390,9 @@ class RigidPairs {
   std::vector<std::size_t> first_pair_;       // of each part, while they are sorted
   std::vector<std::uint32_t> still_, still_before_;
   std::vector<Bounds<Real, Dim>> still_rooms_;
+  SortedBounds<Real, Dim> sorted_;
   BoundsTree<Real, Dim> tree_, tree_of_still_;
-  bool is_new_ = true;
+  bool is_new_ = true, is_tree_stale_ = true;
 };
 
 }  // namespace continuo

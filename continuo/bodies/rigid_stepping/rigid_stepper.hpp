@@ -257,7 +257,7 @@ class RigidStepper {
   /// world is crowded. In others contacts are swept, several at once, and joints one by one between them.
   void choose_solvers() {
     solvers_.resize(islands_.size());
-    const bool is_crowded = active_.size() > most_contacts_of_thick_islands;
+    const bool is_crowded = std::ssize(active_) > most_contacts_of_thick_islands;
     is_swept_.assign(islands_.size(), false);
     for_each_island([&](std::size_t k) {
       const auto blocks = islands_.blocks(k);
@@ -266,11 +266,14 @@ class RigidStepper {
       const bool has_joints = joints != blocks.end();
       const bool is_thin = 4 * blocks.size() <= 5 * islands_.bodies(k).size();
       const bool is_cheap = is_thin || (!is_crowded && blocks.size() <= most_blocks_of_small_islands);
-      if (is_cheap || has_joints) solvers_[k].begin(islands_, k, rows_, bodies_);
+      // That of a heap is too thick anyway: to find that out in each step takes as long as a sweep.
+      const bool is_heap = contacts > most_contacts_of_thick_islands &&
+                           4 * static_cast<std::size_t>(contacts) > 5 * islands_.bodies(k).size();
+      if (is_cheap || (has_joints && !is_heap)) solvers_[k].begin(islands_, k, rows_, bodies_);
       const auto in_lanes = contacts + std::count_if(joints, blocks.end(),
                                                      [this](std::uint32_t block) { return may_be_in_lanes(block); });
       const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
-      if (has_joints ? is_large && !solvers_[k].is_direct() : !is_cheap) is_swept_[k] = 1;
+      if (has_joints ? is_large && (is_heap || !solvers_[k].is_direct()) : !is_cheap) is_swept_[k] = 1;
     });
     swept_.clear();
     is_in_lanes_.assign(world_.size(), false);
@@ -411,8 +414,7 @@ class RigidStepper {
     points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, options_.fastest_push);
     // One sweep leaves bodies that are deep in each other a part of the speed at which they are pushed apart.
-    const Real deep = options_.fastest_push / (8 * soft.rate);
-    relaxing_sweeps_ = manifolds_.least_separation() < -deep ? sweeps_of_deep_contacts : 1;
+    manifolds_.set_deep(options_.fastest_push / (8 * soft.rate));
     statistics.colours = manifolds_.colours();
     const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
@@ -477,7 +479,9 @@ class RigidStepper {
       if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
       limit_energy(k, RowPass::relax);
     });
-    for (int k = 0; has_lanes() && k < relaxing_sweeps_; ++k) relax_swept();
+    if (has_lanes()) relax_swept(ManifoldPass::relax);
+    for (int k = 0; has_lanes() && manifolds_.is_deep() && k < sweeps_of_deep_contacts; ++k)
+      relax_swept(ManifoldPass::relax_deep);
     note_greatest_impulses();
     keep_contacts();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
@@ -593,10 +597,10 @@ class RigidStepper {
       for (const std::uint32_t i : std::span(easy_).subspan(from, to - from)) move_state(i, S{}, h);
     });
   }
-  void relax_swept() {
+  void relax_swept(ManifoldPass pass) {
     sweep_joints(RowPass::relax);
-    points_.sweep(ManifoldPass::relax);
-    manifolds_.sweep(ManifoldPass::relax);
+    points_.sweep(pass);
+    manifolds_.sweep(pass);
   }
   void sweep_joints(RowPass pass) {
     for_each_swept_joint(
@@ -956,8 +960,9 @@ class RigidStepper {
   }
 
   static constexpr Real gain_of_turning_joints = Real(1.05);  // in a substep that turns them by a fifth of a radian
-  static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 4;
-  static constexpr std::size_t most_contacts_of_thick_islands = 500, most_blocks_of_small_islands = 100;
+  static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 3;
+  static constexpr std::ptrdiff_t most_contacts_of_thick_islands = 500;
+  static constexpr std::size_t most_blocks_of_small_islands = 100;
 
   World<Real, Dim>& world_;
   FastOptions<Real> options_;
@@ -965,7 +970,6 @@ class RigidStepper {
   ManifoldSolver<Real, Dim> manifolds_{team_};
   PointJointSolver<Real, Dim> points_{team_};
   std::vector<std::uint32_t> swept_;                        // the contacts of islands that are swept
-  int relaxing_sweeps_ = 1;                                 // of these, in a substep
   std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;                       // the bodies of these
   std::vector<std::uint8_t> is_swept_;                      // of each island
