@@ -36,6 +36,8 @@ struct FastOptions {
   Real sleep_after = Real(0);     // bodies slower than sleep_speed for so long fall asleep; 0: never
   Real sleep_speed = Real(0.05);  // of centre and rim
   int threads = 1;                // at most; the results are the same to the last bit for any number
+  int registers = 0;              // bytes of those that solve large islands in lanes: 16, 32 or 64; 0: the widest that
+                                  // this machine has; the results are the same to the last bit for each width
   friend bool operator==(const FastOptions&, const FastOptions&) = default;
 };
 
@@ -76,8 +78,8 @@ class FastMotion {
   [[nodiscard]] Status advance_to(const Real& t);
   /// Those of the next step.
   [[nodiscard]] const FastOptions<Real>& options() const;
-  /// Changes the options from the next step on. Another step, integrator, number of substeps or threads, and other
-  /// recording or sleep, begin anew, as `refresh` does.
+  /// Changes the options from the next step on. Another step, integrator, number of substeps or threads, width of
+  /// registers, and other recording or sleep, begin anew, as `refresh` does.
   void set_options(const FastOptions<Real>& options);
   /// Starts anew from the present state of the world, with all bodies awake.
   void refresh();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/manifold_kernels/chosen_kernels.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_steps.hpp>
 #include <continuo/bodies/time_stepping/fast_stepper.hpp>
 
@@ -31,8 +32,11 @@ struct FastMotion<Real, Dim>::Steppers {
   decltype(auto) with_stepper(Act&& act) {
     return any ? act(*any) : act(*balls);
   }
+  /// Balls are solved in registers that every machine has, but a width that is wrong is wrong for them, too.
   [[nodiscard]] Status advance() {
     choose();
+    if (balls && options.registers != 0)
+      if (const auto kernels = chosen_kernels<Real, Dim>(options.registers); !kernels) return kernels.status();
     return with_stepper([](auto& stepper) { return stepper.advance(); });
   }
   void renew() {

@@ -16,6 +16,7 @@
 
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/manifold_kernels/chosen_kernels.hpp>
 #include <continuo/bodies/rigid_stepping/continuous_collision.hpp>
 #include <continuo/bodies/rigid_stepping/energy_bounds.hpp>
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
@@ -38,14 +39,18 @@ class RigidStepper {
   using S = Spin<Real, Dim>;
 
   RigidStepper(World<Real, Dim>& world, const FastOptions<Real>& options)
-      : log(options.contact_events), world_(world), options_(options), team_(options.threads) {}
+      : log(options.contact_events),
+        world_(world),
+        options_(options),
+        team_(options.threads),
+        kernels_(chosen_kernels<Real, Dim>(options.registers)) {}
 
   void renew() {
     is_stale_ = true;
     contacts_.clear();
     sleep_ = {};
   }
-  /// Of the same step, substeps, integrator, threads and records.
+  /// Of the same step, substeps, integrator, threads, registers and records.
   void set_options(const FastOptions<Real>& options) { options_ = options; }
   [[nodiscard]] Status advance() {
     Status status;
@@ -114,6 +119,7 @@ class RigidStepper {
 
   [[nodiscard]] Status check_world() const {
     if (Status fault = check(options_, world_); !fault) return fault;
+    if (!kernels_) return kernels_.status();
     if (options_.integrator != ForceIntegrator::semi_implicit_euler)
       return invalid_input("bodies other than balls, joints and static meshes need semi-implicit Euler");
     for (const Material<Real>& material : world_.material)
@@ -967,8 +973,9 @@ class RigidStepper {
   World<Real, Dim>& world_;
   FastOptions<Real> options_;
   ThreadTeam team_;
-  ManifoldSolver<Real, Dim> manifolds_{team_};
-  PointJointSolver<Real, Dim> points_{team_};
+  Result<ManifoldKernels<Real, Dim>> kernels_;
+  ManifoldSolver<Real, Dim> manifolds_{team_, kernels_ ? *kernels_ : ManifoldKernels<Real, Dim>{}};
+  PointJointSolver<Real, Dim> points_{team_, kernels_ ? *kernels_ : ManifoldKernels<Real, Dim>{}};
   std::vector<std::uint32_t> swept_;                        // the contacts of islands that are swept
   std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;                       // the bodies of these
