@@ -3,7 +3,8 @@
 // each direction in which it holds. All solvers see only these rows.
 //
 // A row asks for J v + bias + softness impulse = 0, where its impulse stays between `least` and `most`; of the friction
-// of a contact, the size of the impulse across the normal stays below friction times that along it.
+// of a contact, the size of the impulse across the normal stays below friction times that along it, and the impulse of
+// a pull, which has a row for each axis, stays below the greatest one in length.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <continuo/bodies/rigid_stepping/rigid_body.hpp>
@@ -61,6 +63,7 @@ struct RowBlock {
   std::uint16_t rows = 0;      // their number
   std::uint16_t points = 0;    // of a contact; 0: a joint
   float friction = 0;          // of a contact
+  bool is_bounded = false;     // whether the length of all impulses together is `most` of its first row, at most
 };
 
 /// What is to be solved in a step: rows in blocks.
@@ -78,14 +81,26 @@ struct Constraints {
 /// Which velocity a solver asks for: push corrects positions as well, relax removes the velocity that this gave.
 enum class RowPass : std::uint8_t { push, relax };
 
-/// Shortens the impulses across the normal to what friction allows.
+/// Shortens the impulses across the normal to what friction allows, or those of a pull to its greatest one.
 template <class Real, std::size_t Size>
-void limit_friction(std::array<Real, Size>& impulse, const Real& most) {
+void limit_length(std::array<Real, Size>& impulse, const Real& most) {
   Real square(0);
   for (const Real& part : impulse) square += part * part;
   if (square <= most * most) return;
   const Real factor = most > Real(0) ? most / std::sqrt(square) : Real(0);
   for (Real& part : impulse) part *= factor;
+}
+
+/// Shortens the impulses of a pull to its greatest one.
+template <class Real, int Dim>
+void limit_pull(std::span<ConstraintRow<Real, Dim>> rows, RigidBody<Real, Dim>& a, RigidBody<Real, Dim>& b) {
+  std::array<Real, Dim> limited;
+  for (std::size_t i = 0; i < Dim; ++i) limited[i] = rows[i].impulse;
+  limit_length(limited, rows[0].most);
+  for (std::size_t i = 0; i < Dim; ++i) {
+    rows[i].apply(limited[i] - rows[i].impulse, a, b);
+    rows[i].impulse = limited[i];
+  }
 }
 
 /// One sweep over the rows of a block (projected Gauss-Seidel): friction first, so that normal velocities, which matter
@@ -99,7 +114,7 @@ void sweep(std::span<ConstraintRow<Real, Dim>> rows, const RowBlock& block, RowP
     std::array<Real, across> wanted;
     for (std::size_t k = 0; k < across; ++k)
       wanted[k] = tangents[k].impulse - tangents[k].mass * tangents[k].velocity(a, b);
-    limit_friction(wanted, Real(block.friction) * rows[point].impulse);
+    limit_length(wanted, Real(block.friction) * rows[point].impulse);
     for (std::size_t k = 0; k < across; ++k) {
       tangents[k].apply(wanted[k] - tangents[k].impulse, a, b);
       tangents[k].impulse = wanted[k];
@@ -112,10 +127,12 @@ void sweep(std::span<ConstraintRow<Real, Dim>> rows, const RowBlock& block, RowP
     const Real softness = is_pushing || block.points == 0 ? row.softness : Real(0);
     const Real residual = row.velocity(a, b) + (is_pushing ? row.bias : row.bias_at_end) + softness * row.impulse;
     const Real change = -row.mass * residual / (1 + row.mass * softness);
-    const Real impulse = std::clamp(row.impulse + change, row.least, row.most);
+    const Real impulse =
+        block.is_bounded ? row.impulse + change : std::clamp(row.impulse + change, row.least, row.most);
     row.apply(impulse - row.impulse, a, b);
     row.impulse = impulse;
   }
+  if (block.is_bounded) limit_pull<Real, Dim>(rows, a, b);
 }
 
 }  // namespace continuo

@@ -336,6 +336,10 @@ class DirectSolver {
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const RowBlock& block = blocks_[k];
       Row* const rows = &rows_[block.first];
+      if (block.is_bounded) {
+        has_changed |= choose_bounded<Dim>(rows, pairs_[k]);
+        continue;
+      }
       const std::size_t count = block.points > 0 ? block.points : block.rows;
       for (std::size_t r = 0; r < count; ++r) {
         Row& row = rows[r];
@@ -348,14 +352,15 @@ class DirectSolver {
         has_changed |= set(row, acts ? RowState::acts : RowState::open);
       }
       for (std::size_t point = 0; point < block.points; ++point)
-        has_changed |= choose_friction(&rows[block.points + point * (Dim - 1)], pairs_[k]);
+        has_changed |= choose_bounded<Dim - 1>(&rows[block.points + point * (Dim - 1)], pairs_[k]);
     }
     return has_changed;
   }
-  /// The first row of a point has the limit.
-  bool choose_friction(Row* rows, const Pair& pair) {
+  /// Of rows whose impulses have a bounded length, as those of friction and of a pull. The first one has the limit.
+  template <std::size_t Count>
+  bool choose_bounded(Row* rows, const Pair& pair) {
     const double most = rows->most;
-    std::array<double, Dim - 1> wanted;
+    std::array<double, Count> wanted;
     double square = 0, along = 0;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       wanted[k] = rows[k].start - rows[k].slope * residual(rows[k], pair, v_);
@@ -364,7 +369,7 @@ class DirectSolver {
     // What slid and would now slide back has come to rest in between.
     const bool has_turned = rows[0].state == RowState::slides && along < 0;
     const bool slides = square > most * most && !has_turned;
-    limit_friction(wanted, most);
+    limit_length(wanted, most);
     bool has_changed = false;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       rows[k].impulse = wanted[k];
@@ -378,24 +383,32 @@ class DirectSolver {
     bool has_changed = false;
     for (const RowBlock& block : blocks_) {
       Row* const rows = &rows_[block.first];
+      if (block.is_bounded) {
+        has_changed |= guess_bounded<Dim>(rows);
+        continue;
+      }
       const std::size_t count = block.points > 0 ? block.points : block.rows;
       for (std::size_t r = 0; r < count; ++r)
         has_changed |= set(
             rows[r], rows[r].wanted > rows[r].least && rows[r].wanted < rows[r].most ? RowState::acts : RowState::open);
       for (std::size_t r = 0; r < count; ++r)
         if (rows[r].state == RowState::open) rows[r].impulse = rows[r].wanted;
-      for (std::size_t point = 0; point < block.points; ++point) {
-        Row* const across = rows + block.points + point * (Dim - 1);
-        double square = 0;
-        for (std::size_t k = 0; k < Dim - 1; ++k) square += across[k].wanted * across[k].wanted;
-        const double most = across->most;
-        const bool slides = square >= most * most * (1 - 1e-6);
-        for (std::size_t k = 0; k < Dim - 1; ++k) {
-          has_changed |= set(across[k], most == 0 ? RowState::open : slides ? RowState::slides : RowState::acts);
-          if (across[k].state != RowState::acts) across[k].impulse = across[k].wanted;
-          across[k].part = 1e-3;
-        }
-      }
+      for (std::size_t point = 0; point < block.points; ++point)
+        has_changed |= guess_bounded<Dim - 1>(rows + block.points + point * (Dim - 1));
+    }
+    return has_changed;
+  }
+  template <std::size_t Count>
+  static bool guess_bounded(Row* rows) {
+    double square = 0;
+    for (std::size_t k = 0; k < Count; ++k) square += rows[k].wanted * rows[k].wanted;
+    const double most = rows->most;
+    const bool slides = square >= most * most * (1 - 1e-6);
+    bool has_changed = false;
+    for (std::size_t k = 0; k < Count; ++k) {
+      has_changed |= set(rows[k], most == 0 ? RowState::open : slides ? RowState::slides : RowState::acts);
+      if (rows[k].state != RowState::acts) rows[k].impulse = rows[k].wanted;
+      rows[k].part = 1e-3;
     }
     return has_changed;
   }
@@ -474,7 +487,12 @@ class DirectSolver {
       for (std::size_t r = 0; r < block.rows; ++r) {
         const Row& row = rows[r];
         if (row.state == RowState::acts) add(row.on_a, row.on_b, row.slope);
-        if (Dim == 2 || row.state != RowState::slides) continue;
+        if (row.state != RowState::slides) continue;
+        if (block.is_bounded) {
+          assemble_bounded(std::span<const Row>(rows, Dim), add);
+          break;
+        }
+        if (Dim == 2) continue;
         // Two rows: what is across the direction of sliding acts, weaker the faster it slides.
         const Row& next = rows[++r];
         const double square = row.impulse * row.impulse + next.impulse * next.impulse;
@@ -492,6 +510,24 @@ class DirectSolver {
       if (pair.b != fixed) add_to(factors_.diagonal(pair.b), bb);
       if (pair.a != fixed && pair.b != fixed) factors_.add(pair.b, pair.a, ba);
     }
+  }
+
+  /// The stiffness of a pull at its greatest force, which only turns: that of its spring, across the force, as much
+  /// smaller as the force is smaller than what the spring wants.
+  template <class Add>
+  static void assemble_bounded(std::span<const Row> rows, Add&& add) {
+    double square = 0;
+    for (const Row& row : rows) square += row.impulse * row.impulse;
+    if (square == 0) return;
+    Velocity a{}, b{};
+    double slope = 0;
+    for (const Row& row : rows) {
+      const double along = row.impulse / std::sqrt(square);
+      add_multiple(a, along, row.on_a), add_multiple(b, along, row.on_b);
+      slope += row.slope * row.part * (1 - along * along) / (Dim - 1);
+    }
+    for (const Row& row : rows) add(row.on_a, row.on_b, slope);
+    add(a, b, -slope);
   }
 
   BlockPattern pattern_;

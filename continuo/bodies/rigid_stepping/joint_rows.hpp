@@ -250,17 +250,18 @@ template <class Real, int Dim>
 [[nodiscard]] JointSpring<Real> spring_of_pull(const Joint<Real, Dim>& joint) {
   return joint.spring.value_or(JointSpring<Real>{.hertz = Real(5), .damping = Real(0.7)});
 }
-/// A pull has a row for each axis. Where its spring would take more than the greatest force, the limits of the rows are
-/// the components of that force, so that it points to the target and is as great as it may be.
+/// Whether a pull is bounded.
+template <class Real, int Dim>
+[[nodiscard]] bool has_greatest_pull(const Joint<Real, Dim>& joint) {
+  return joint.kind == JointKind::pull && joint.breaks_at < std::numeric_limits<Real>::infinity();
+}
+/// A pull has a row for each axis, and a greatest force, which bounds the length of all their impulses together.
 template <class Real, int Dim>
 void add_pull(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, const JointFrame<Real, Dim>& frame,
               const RigidBody<Real, Dim>& b, const Real& h) {
   constexpr std::array<JointRow, 3> kinds{JointRow::hold_0, JointRow::hold_1, JointRow::hold_2};
   const JointSpring<Real> spring = spring_of_pull(joint);
-  const Softness<Real> soft = softness(spring.hertz, spring.damping, h);
   const Vector<Real, Dim> error = b.x + frame.arm_b - joint.target;
-  const Vector<Real, Dim> wish = error * soft.rate + b.velocity_at(frame.arm_b);  // velocity to be taken away
-  const Real speed = length(wish);
   for (std::size_t i = 0; i < Dim; ++i) {
     Vector<Real, Dim> direction{};
     direction[i] = Real(1);
@@ -268,9 +269,8 @@ void add_pull(JointRows<Real, Dim>& rows, const Joint<Real, Dim>& joint, const J
     row.lever_a = {};
     set_mass(row, RigidBody<Real, Dim>{}, b);
     rows.pull(row, spring, error[i]);
-    if (!(joint.breaks_at < std::numeric_limits<Real>::infinity())) continue;
+    if (!has_greatest_pull(joint)) continue;
     row.most = joint.breaks_at * h;
-    if (soft.of_mass * row.mass * speed > row.most) row.most *= std::abs(wish[i]) / speed;
     row.least = -row.most;
   }
 }
@@ -314,7 +314,10 @@ template <class Real, int Dim>
 void add_rows(const Joint<Real, Dim>& joint, const JointImpulses<Real>& impulses, std::uint32_t number_a,
               std::uint32_t number_b, const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b,
               const JointHardness<Real>& hardness, Constraints<Real, Dim>& all, std::vector<JointRow>& kinds) {
-  RowBlock block{.a = number_a, .b = number_b, .first = static_cast<std::uint32_t>(all.rows.size())};
+  RowBlock block{.a = number_a,
+                 .b = number_b,
+                 .first = static_cast<std::uint32_t>(all.rows.size()),
+                 .is_bounded = has_greatest_pull(joint)};
   const JointFrame<Real, Dim> frame = frame_of(joint, a, b);
   JointRows<Real, Dim> rows(a, b, hardness, impulses, all, kinds);
   const auto about = [&](JointRow kind) -> auto& { return rows.about(kind, turning_axis(frame, 0)); };

@@ -813,8 +813,11 @@ class RigidStepper {
         [&](const auto& contact, const auto& point) {
           return does_rebound(contact, point, threshold) ? contact.restitution * point.approach : Real(0);
         });
-    for (const std::uint32_t block : swept_joints_)
-      for (auto& row : rows_.of(rows_.blocks[block])) row.impulse = Real(0), row.bias_at_end = Real(0);
+    for (const std::uint32_t block : swept_joints_) {
+      const auto rows = rows_.of(rows_.blocks[block]);
+      for (auto& row : rows) row.impulse = Real(0), row.bias_at_end = Real(0);
+      if (rows_.blocks[block].is_bounded) give_nothing(rows);
+    }
     points_.clear_impulses();
     for (int k = 0; k < sweeps_of_impacts; ++k) {
       sweep_joints(RowPass::relax);
@@ -826,9 +829,14 @@ class RigidStepper {
                                          const RigidContactPoint<Real, Dim>& point, const Real& threshold) {
     return contact.restitution > Real(0) && point.greatest_impulse > Real(0) && point.approach < -threshold;
   }
+  /// An impact takes no time, so that a force that is bounded gives it no impulse.
+  static void give_nothing(std::span<ConstraintRow<Real, Dim>> rows) {
+    for (auto& row : rows) row.least = row.most = Real(0);
+  }
   void prepare_rebound(std::uint32_t k, const Real& threshold) {
     const auto rows = rows_.of(rows_.blocks[k]);
     for (auto& row : rows) row.impulse = Real(0), row.bias_at_end = Real(0);
+    if (rows_.blocks[k].is_bounded) give_nothing(rows);
     if (k >= active_.size()) return;
     const auto& contact = contacts_.all()[active_[k]].contact;
     for (std::size_t i = 0; i < contact.size; ++i) {
