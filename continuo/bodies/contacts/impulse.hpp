@@ -27,6 +27,23 @@ template <class Real, int Dim>
   return rate - normal * dot(rate, normal);
 }
 
+/// What an impulse of 1 across the normal changes of the slip: 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2.
+template <class Real, int Dim>
+[[nodiscard]] Real compliance_of_slip(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b) {
+  return a.inverse_mass + b.inverse_mass + a.radius * a.radius * a.inverse_inertia +
+         b.radius * b.radius * b.inverse_inertia;
+}
+/// Applies an impulse across the normal to a, and the opposite one to b.
+template <class Real, int Dim>
+void rub(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal,
+         const Vector<Real, Dim>& impulse) {
+  a.velocity += impulse * a.inverse_mass;
+  b.velocity -= impulse * b.inverse_mass;
+  const Spin<Real, Dim> twist = moment(normal, impulse);
+  a.spin += twist * (a.radius * a.inverse_inertia);
+  b.spin += twist * (b.radius * b.inverse_inertia);
+}
+
 /// Applies the impulse of a collision to both, which must approach each other; returns the normal impulse. With e = 1,
 /// equal masses exchange their normal speeds to the last bit, since no quotient of masses is rounded.
 template <class Real, int Dim>
@@ -40,15 +57,9 @@ template <class Real, int Dim>
   b.velocity += normal * (b.inverse_mass / sum * change);
   const Real speed = length(slip);
   if (!(material.friction > Real(0)) || !(speed > Real(0))) return change / sum;
-  // An impulse along the slip changes it by itself times 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2.
-  const Real compliance = sum + a.radius * a.radius * a.inverse_inertia + b.radius * b.radius * b.inverse_inertia;
-  const Vector<Real, Dim> rub =
-      slip * (std::min(Real(material.friction * change / sum), Real(speed / compliance)) / speed);
-  a.velocity += rub * a.inverse_mass;
-  b.velocity -= rub * b.inverse_mass;
-  const Spin<Real, Dim> twist = moment(normal, rub);
-  a.spin += twist * (a.radius * a.inverse_inertia);
-  b.spin += twist * (b.radius * b.inverse_inertia);
+  const Real compliance = compliance_of_slip(a, b);
+  rub(a, b, normal,
+      Vector<Real, Dim>(slip * (std::min(Real(material.friction * change / sum), Real(speed / compliance)) / speed)));
   return change / sum;
 }
 

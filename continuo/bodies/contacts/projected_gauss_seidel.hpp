@@ -75,22 +75,26 @@ class ProjectedGaussSeidel {
   }
   /// Adds body i and returns its place.
   std::uint32_t add(const World<Real, Dim>& world, std::size_t i) {
-    movers_.push_back({world.velocity[i], world.spin[i], world.inverse_mass[i],
-                       world.radius[i] * world.inverse_inertia[i], world.radius[i]});
+    return add({world.velocity[i], world.spin[i], world.inverse_mass[i], world.radius[i] * world.inverse_inertia[i],
+                world.radius[i]});
+  }
+  std::uint32_t add(const Moving& body) {
+    movers_.push_back(body);
     return static_cast<std::uint32_t>(movers_.size() - 1);
   }
   /// Adds a contact, after its `place`, between the bodies at two places; place 0 is a wall.
   Row& add(const PersistentContact<Real, Dim>& contact, std::uint32_t at_a, std::uint32_t at_b) {
-    Row row{.a = at_a,
-            .b = at_b,
-            .normal = contact.normal,
-            .friction = contact.slip.most,
-            .resistance = contact.roll.most,
-            .arm = contact.arm};
+    Row& row = add(contact.normal, contact.slip.most, at_a, at_b);
+    row.resistance = contact.roll.most, row.arm = contact.arm;
+    row.of_roll = row.arm * row.arm * (over(movers_[at_a]) + over(movers_[at_b]));
+    return row;
+  }
+  /// A contact without resistance to rolling.
+  Row& add(const V& normal, const Real& friction, std::uint32_t at_a, std::uint32_t at_b) {
+    Row row{.a = at_a, .b = at_b, .normal = normal, .friction = friction};
     const Moving &a = movers_[at_a], &b = movers_[at_b];
     row.of_normal = a.inverse_mass + b.inverse_mass;
     row.of_slip = row.of_normal + a.radius * a.turn + b.radius * b.turn;
-    row.of_roll = row.arm * row.arm * (over(a) + over(b));
     return rows_.emplace_back(row);
   }
 

@@ -27,8 +27,8 @@ struct Touching {
   }
   /// The pair with the body numbers `to`; nothing where a body has none.
   std::optional<Touching> moved(std::span<const std::uint32_t> to) const {
-    constexpr auto nowhere = std::numeric_limits<std::uint32_t>::max();
-    if (to[a] == nowhere || to[b] == nowhere) return {};
+    constexpr auto removed = std::numeric_limits<std::uint32_t>::max();
+    if (to[a] == removed || to[b] == removed) return {};
     return Touching{.a = to[a], .b = to[b], .wall = wall};
   }
   template <class Archive>

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <continuo/bodies/contacts/contact_time.hpp>
@@ -15,6 +16,7 @@
 #include <continuo/bodies/event_driven/flight_bytes.hpp>
 #include <continuo/bodies/event_driven/flights.hpp>
 #include <continuo/bodies/event_driven/inelastic_collapse.hpp>
+#include <continuo/bodies/event_driven/instant_collisions.hpp>
 #include <continuo/bodies/event_driven/resting.hpp>
 #include <continuo/bodies/event_driven/simultaneous_impacts.hpp>
 #include <continuo/bodies/event_driven/sphere_proxy.hpp>
@@ -36,6 +38,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
         contact_time_(options.contact_time ? *options.contact_time : usual_contact_time(world)),
         flights_(world) {
     flights_.slow = slow();
+    flights_.at_one_time = time_of_one_instant();
     sort();
     for (std::uint32_t i = 0; i < flights_.paths.size(); ++i) predict(i);
   }
@@ -90,6 +93,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     reader(contact_time_);
     reader.expect(contact_time_ >= Real(0), "a contact time below 0");
     flights_.slow = slow();
+    flights_.at_one_time = time_of_one_instant();
     if (load_flights(reader, flights_)) sort();
   }
 
@@ -103,6 +107,8 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     if (is_heavy() || world_.size() == 0 || !(contact_time_ > Real(0))) return Real(0);
     return Real(1e-5) * std::ranges::min(world_.radius) / contact_time_;
   }
+  /// The rounding of a path of some radii, from the usual contact time.
+  Real time_of_one_instant() const { return Real(1e7) * std::numeric_limits<Real>::epsilon() * contact_time_; }
   /// Sorts the bodies in memory; the motion stays the same.
   void sort() {
     crossings_since_sort_ = 0;
@@ -257,6 +263,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   }
 
   void hit(std::uint32_t i, std::uint32_t j) {
+    if (may_be_shared(i, j) && collide_at_once(i, j)) return;
     ++statistics.collisions;
     Material<Real> material = combined(world_.combine_rule, flights_.material(i), flights_.material(j));
     const bool caught = is_caught(material, i) || is_caught(material, j),
@@ -291,6 +298,80 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     predict(j);
   }
 
+  /// Whether the present collision of two bodies, or of one with a wall, may be at one instant with others.
+  bool may_be_shared(std::uint32_t i, std::uint32_t j) {
+    return flights_.plans[i].is_tied || flights_.plans[j].is_tied ||
+           queue_.has_others_until(flights_.now + flights_.at_one_time, i, j);
+  }
+  /// Lets collide what touches body i, or is connected with it by contacts, where several pairs approach each other at
+  /// this instant. False where they do not, or where one of them is caught.
+  bool collide_at_once(std::uint32_t i, std::uint32_t j) {
+    at_once_.gather(flights_, i);
+    const auto touching = at_once_.contacts();
+    if (touching.size() < 2) return false;
+    const auto velocity_now = [this](std::uint32_t k) { return flights_.velocity_now(k); };
+    if (at_once_.find_approaching(flights_, velocity_now) < 2 || are_caught(touching)) return false;
+    for (const std::uint32_t k : at_once_.members()) bring(k);
+    constexpr int most_rounds = 1000;
+    for (int round = 0; round < most_rounds; ++round) {
+      const auto velocity = [this](std::uint32_t k) -> const V& { return flights_.paths[k].v; };
+      if (round > 0 && (at_once_.find_approaching(flights_, velocity) == 0 || are_caught(touching))) break;
+      const bool piled = lose_what_piles_up(touching);
+      if (piled && !is_heavy() && strike_simultaneously(i, j)) break;
+      round_.collide(touching, [this](std::uint32_t k) { return mover(k, true); });
+      for (std::size_t c = 0; c < touching.size(); ++c) note_round(touching[c], at_once_.wall_of(c));
+    }
+    for (std::size_t c = 0; c < touching.size(); ++c) stay(touching[c], at_once_.wall_of(c));
+    for (const std::uint32_t k : at_once_.members()) predict(k);
+    return true;
+  }
+  /// Whether one of the bodies of a contact that acts does what `does(material, body)` says.
+  template <class Does>
+  static bool any_body(const Collision<Real, Dim>& one, Does&& does) {
+    return one.acts &&
+           (does(one.material, one.a) || (one.b != Collision<Real, Dim>::wall && does(one.material, one.b)));
+  }
+  bool are_caught(std::span<const Collision<Real, Dim>> all) const {
+    return std::ranges::any_of(all, [this](const Collision<Real, Dim>& one) {
+      return any_body(one, [this](const auto& material, std::uint32_t k) { return is_caught(material, k); });
+    });
+  }
+  /// Takes the restitution of those contacts that pile up. Returns whether there are any.
+  bool lose_what_piles_up(std::span<Collision<Real, Dim>> all) const {
+    bool piled = false;
+    for (Collision<Real, Dim>& one : all) {
+      if (!any_body(one, [this](const auto& material, std::uint32_t k) { return is_piled(material, k); })) continue;
+      one.material.restitution = Real(0);
+      piled = true;
+    }
+    return piled;
+  }
+  void note_round(const Collision<Real, Dim>& one, std::uint32_t wall) {
+    if (!one.acts) return;
+    const bool is_wall = one.b == Collision<Real, Dim>::wall;
+    ++(is_wall ? statistics.wall_collisions : statistics.collisions);
+    note_collision(one.a);
+    if (!is_wall) note_collision(one.b);
+    if (!contacts.is_kept() || !(one.impulse > Real(0))) return;
+    if (is_wall) return note_wall(one.a, wall, ContactChange::impact, one.impulse);
+    const Path<Real, Dim>& a = flights_.paths[one.a];
+    contacts.add({.a = handle_of(one.a),
+                  .b = handle_of(one.b),
+                  .point = a.x + one.normal * a.radius,
+                  .normal = one.normal,
+                  .impulse = one.impulse,
+                  .time = flights_.now});
+  }
+  /// After the last round: who now lies on whom.
+  void stay(const Collision<Real, Dim>& one, std::uint32_t wall) {
+    if (!is_heavy() || flights_.plans[one.a].last_collision != flights_.now) return;
+    if (one.b != Collision<Real, Dim>::wall) {
+      if (stays_on(one.a, one.b, one.normal)) stop_at(one.a, one.b);
+    } else if (flights_.acts[one.a] == Act::falls) {
+      rest_after_hit(one.a, wall, false);
+    }
+  }
+
   /// Strikes all bodies that are connected with these by contacts, so that no two approach each other afterwards.
   /// Returns whether any motion has changed.
   bool strike_simultaneously(std::uint32_t i, std::uint32_t j) {
@@ -321,6 +402,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   }
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
+    if (may_be_shared(i, i) && collide_at_once(i, i)) return;
     ++statistics.wall_collisions;
     Material<Real> material = combined(world_.combine_rule, flights_.material(i), world_.walls()[w].material);
     const bool caught = is_caught(material, i), piled = is_piled(material, i);
@@ -337,12 +419,15 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
       impulse = collide(mover(i, rubs), of_wall, V(-wall.normal), material);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
+    rest_after_hit(i, w, caught);
+    predict(i);
+  }
+  void rest_after_hit(std::uint32_t i, std::uint32_t w, bool caught) {
     const Rest rest = caught ? Rest::flies : rest_on_walls(flights_, i, w, contact_time_);
     if (caught || rest == Rest::lies_in_groove) is_heavy() ? stop_at(i, i) : freeze(i);
     if (rest == Rest::lies && contacts.is_kept())
       for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
         note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
-    predict(i);
   }
 
   /// Notes that a body has a new path. It no longer rests on its supports, until it hits them again.
@@ -385,6 +470,8 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   EventQueue<Real> queue_;
   EventPrefetch<Real, Dim> prefetch_;
   SimultaneousImpacts<Real, Dim> simultaneous_;
+  InstantCollisions<Real, Dim> at_once_;
+  CollisionRound<Real, Dim> round_;
   std::size_t crossings_since_sort_ = 0;
   std::vector<std::uint32_t> place_;  // of each number
   S no_spin_{};

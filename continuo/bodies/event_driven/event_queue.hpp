@@ -33,7 +33,10 @@ class EventQueue {
     Node& node = nodes_[body];
     const std::uint32_t to = place_for(time);
     node.time = time;
-    if (to == later && (node.place & kind) == later) return;
+    if (to == later && (node.place & kind) == later) {
+      least_later_ = std::min(least_later_, time);
+      return;
+    }
     leave(body);
     enter(body, to);
   }
@@ -44,6 +47,21 @@ class EventQueue {
     return heap_.empty() ? never : heap_.front().time;
   }
   [[nodiscard]] std::uint32_t first() const { return heap_.front().body; }
+  /// Whether bodies other than these two have events up to a time soon after the earliest.
+  [[nodiscard]] bool has_others_until(const Real& t, std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t place = place_for(t);
+    const std::size_t last = place == later ? buckets_.size() : (place & kind) == in_bucket ? place + 1 : 0;
+    while (present_ < last) take_bucket();
+    for (const Entry& entry : heap_)
+      if (entry.time <= t && entry.body != a && entry.body != b) return true;
+    if (place != later || !(least_later_ <= t)) return false;
+    least_later_ = never;
+    for (const std::uint32_t body : later_) {
+      least_later_ = std::min(least_later_, nodes_[body].time);
+      if (nodes_[body].time <= t && body != a && body != b) return true;
+    }
+    return false;
+  }
 
   /// For prefetching. Buckets come one after the other, until they begin again at 0. `coming` writes the bodies of a
   /// later bucket to the front of `found`, and returns their number.
@@ -80,6 +98,7 @@ class EventQueue {
     } else if (to == later) {
       node.place = later | static_cast<std::uint32_t>(later_.size());
       later_.push_back(body);
+      least_later_ = std::min(least_later_, node.time);
     } else if (to != nowhere) {
       buckets_.insert(to, body);
     }
@@ -109,6 +128,9 @@ class EventQueue {
   void fill_heap() {
     while (present_ < buckets_.size() && buckets_.is_empty(present_)) ++present_;
     if (present_ == buckets_.size()) return share_out();
+    take_bucket();
+  }
+  void take_bucket() {
     const std::size_t count = coming(present_, waiting_);
     buckets_.clear(present_++);
     for (std::size_t i = 0; i < count; ++i) enter(waiting_[i], in_heap);
@@ -118,6 +140,7 @@ class EventQueue {
     if (later_.empty()) return;
     waiting_.swap(later_);
     later_.clear();
+    least_later_ = never;
     std::vector<Real> times(waiting_.size());
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = nodes_[waiting_[i]].time;
     const auto half = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
@@ -161,6 +184,7 @@ class EventQueue {
   std::vector<std::uint32_t> later_, waiting_;
   std::uint32_t present_ = 0;
   Real begin_ = std::numeric_limits<Real>::lowest(), buckets_per_time_ = never;  // until shared out: all wait
+  Real least_later_ = never;                                                     // no waiting body has an earlier event
 };
 
 }  // namespace continuo

@@ -14,15 +14,18 @@ namespace continuo {
 template <class Archive, class Real, int Dim>
 void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
   auto& [path, plan, turning, collisions, act] = flight;
+  constexpr std::uint8_t tied = 128;  // beside the number of the axis
+  auto axis_byte = static_cast<std::uint8_t>(plan.axis | (plan.is_tied ? tied : 0));
   archive(path.x), archive(path.v), archive(path.t);
   archive(plan.collision_time), archive(plan.crossing_time), archive(plan.last_collision), archive(turning.spun_to);
   archive(turning.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
   archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
-  archive(plan.direction), archive(plan.axis), archive(turning.spin_rate), archive(plan.path_end);
+  archive(plan.direction), archive(axis_byte), archive(turning.spin_rate), archive(plan.path_end);
   archive(turning.spin), archive(turning.spun_since), archive(plan.strikes_at_once), archive(plan.in_a_row);
   auto act_byte = static_cast<std::uint8_t>(act);
   archive(collisions), archive(act_byte);
   if constexpr (Archive::reads) {
+    plan.axis = static_cast<std::uint8_t>(axis_byte & ~tied), plan.is_tied = (axis_byte & tied) != 0;
     archive.expect(act_byte <= static_cast<std::uint8_t>(Act::is_proxy), "a body that moves in no known way");
     act = static_cast<Act>(act_byte & 3u);
   }

@@ -83,6 +83,7 @@ struct alignas(sizeof(Real) * 16) Plan {
   bool is_large = false;
   std::uint8_t support_count = 0;
   std::uint8_t strikes_at_once = 0;  // simultaneous strikes at the instant of the last collision
+  bool is_tied = false;              // the next collision may be at one instant with another one
   std::uint16_t in_a_row = 0;        // collisions before the last, each soon after the one before
   std::uint32_t number = 0, material = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
@@ -132,7 +133,8 @@ class Flights {
 
   const World<Real, Dim>& world;
   Real now;
-  Real slow{};  // approaches within the rounding of this speed do not count as collisions
+  Real slow{};         // approaches within the rounding of this speed do not count as collisions
+  Real at_one_time{};  // collisions that are apart by no more, or by the rounding of time, may be at one instant
   std::vector<Path<Real, Dim>> paths;
   std::vector<Plan<Real, Dim>> plans;
   std::vector<Turning<Real, Dim>> turnings;
@@ -174,6 +176,9 @@ class Flights {
     advance(path, plans[i].acceleration, now);
     return path.x;
   }
+  [[nodiscard]] V velocity_now(std::uint32_t i) const {
+    return paths[i].v + plans[i].acceleration * (now - paths[i].t);
+  }
   void move_to_now(std::uint32_t i) { advance(paths[i], plans[i].acceleration, now); }
 
   [[nodiscard]] static bool is_support(const Plan<Real, Dim>& plan, std::uint32_t w) {
@@ -209,6 +214,7 @@ class Flights {
     plan.crossing_time = never;
     plan.collision_time = plan.path_end;
     plan.partner = plan.path_end < never ? look_again : nobody;
+    plan.is_tied = false;
     if (acts[i] == Act::is_fixed) return;
     move_to_now(i);
     predict_crossing(i);
@@ -240,6 +246,13 @@ class Flights {
     plan.crossing_time = never;
     predict_crossing(i);
     predict_pairs(i, grid.gather(lower, upper, candidates_));
+  }
+
+  /// Whether the approach of two bodies in contact is within the rounding of their velocities, or as good as rest, as
+  /// after a simultaneous strike. Such bodies sink into each other by no more than the rounding of positions on the
+  /// way.
+  [[nodiscard]] bool is_rounding(const Real& approach, const Real& speeds) const {
+    return approach <= 8 * std::numeric_limits<Real>::epsilon() * std::max(speeds, slow);
   }
 
  private:
@@ -299,10 +312,17 @@ class Flights {
     if (speed >= Real(0) && pull >= Real(0)) return;
     if (along <= path.radius && pull == Real(0) && is_rounding(Real(-speed), length(path.v))) return;
     const Real wait = time_to_close(Real(along - path.radius), speed, pull);
+    note_tie(plan, now + wait);
     if (now + wait < plan.collision_time) {
       plan.collision_time = now + wait;
       plan.partner = first_wall + w;
     }
+  }
+  /// Before a collision at time t is taken, or is not.
+  void note_tie(Plan<Real, Dim>& plan, const Real& t) const {
+    const Real near = at_one_time + 16 * std::numeric_limits<Real>::epsilon() * std::abs(t);
+    const bool is_near = plan.collision_time <= t + near && t <= plan.collision_time + near;
+    plan.is_tied = is_near || (plan.is_tied && t > plan.collision_time);
   }
 
   /// Predicts the collisions of body i with the first `count` candidates.
@@ -344,13 +364,6 @@ class Flights {
     return static_cast<unsigned>(b < Real(0)) & (overlap | hit);
   }
 
-  /// Whether the approach of two bodies in contact is within the rounding of their velocities, or as good as rest, as
-  /// after a simultaneous strike. Such bodies sink into each other by no more than the rounding of positions on the
-  /// way.
-  [[nodiscard]] bool is_rounding(const Real& approach, const Real& speeds) const {
-    return approach <= 8 * std::numeric_limits<Real>::epsilon() * std::max(speeds, slow);
-  }
-
   void predict_pair(std::uint32_t i, std::uint32_t j) {
     if (i == j) return;
     const Path<Real, Dim>&me = paths[i], &other = paths[j];
@@ -386,6 +399,7 @@ class Flights {
   void meet(std::uint32_t i, std::uint32_t j, const Real& wait) {
     Plan<Real, Dim>& plan = plans[i];
     const Real t = now + wait;
+    note_tie(plan, t);
     if (!(t < plan.collision_time) && !(t == plan.collision_time && t < never && gives_way(plan.partner, j))) return;
     if (some_pass_ && !world.collide(plan.number, plans[j].number)) return;
     plan.collision_time = t;

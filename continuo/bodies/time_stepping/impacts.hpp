@@ -1,18 +1,23 @@
 // Collisions too fast for a soft contact, or with restitution, each at its instant within a substep: as in the exact
 // motion, a queue has the collisions that are predicted on parabolic paths, here among the listed pairs. Both bodies
 // advance to the place of the impact, change their velocities, and go back along their new paths to the beginning of
-// the substep, from where the contact solver continues.
+// the substep, from where the contact solver continues. Impacts of one instant that share bodies are solved together.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <queue>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/contact_solver/contact_step.hpp>
+#include <continuo/bodies/contacts/collide_together.hpp>
 #include <continuo/bodies/contacts/collision_time.hpp>
 #include <continuo/bodies/contacts/impulse.hpp>
 #include <continuo/bodies/time_stepping/broad_phase.hpp>
@@ -66,11 +71,10 @@ class Impacts {
     }
     std::size_t struck = 0, left = 64 * bodies.size();  // a bound: the impacts of squeezed balls never end
     for (; !queue_.empty() && left > 0; --left) {
-      const Impact impact = queue_.top();
-      queue_.pop();
-      if (!is_current(making, impact)) continue;
-      strike(making, impact);
-      ++struck;
+      take_instant(making);
+      for (const Impact& impact : apart_) strike(making, impact);
+      if (!shared_.empty()) strike_together(making);
+      struck += apart_.size() + shared_.size();
     }
     queue_ = {};
     return struck;
@@ -125,7 +129,8 @@ class Impacts {
                                   : time_to_touch(apart, rate_now, pull, reach, Real(h - from));
     if (!(from + wait < h)) return;
     const V then = apart + rate_now * wait + pull * (wait * wait / 2), v_then = rate_now + pull * wait;
-    if (!counts(making, Real(-dot(v_then, then) / reach), restitution, smaller)) return;
+    const Real approach = -dot(v_then, then) / reach;
+    if (!counts(making, approach, restitution, smaller) || approach * h < rounding(bodies, i)) return;
     queue_.push({from + wait, i, j, bodies.impacts[i], bodies.impacts[j]});
   }
   void foresee_wall(const Making& making, std::uint32_t i, std::uint32_t w, const Real& from) {
@@ -143,6 +148,101 @@ class Impacts {
     queue_.push({from + wait, i, bodies.wall(w), bodies.impacts[i], 0});
   }
 
+  /// Takes the next impact from the queue, with those of the same instant, up to rounding: those that share no moving
+  /// body with another one apart from the others.
+  void take_instant(const Making& making) {
+    const auto& bodies = making.bodies;
+    apart_.clear(), shared_.clear();
+    Real until = queue_.top().time;
+    bool is_first = true;
+    while (!queue_.empty() && queue_.top().time <= until) {
+      const Impact impact = queue_.top();
+      queue_.pop();
+      if (!is_current(making, impact)) continue;
+      shared_.push_back(impact);
+      if (std::exchange(is_first, false)) until = impact.time + instant_of(making, impact);
+    }
+    if (shared_.size() < 2) return apart_.swap(shared_);
+    const auto pair_of = [](const Impact& impact) { return std::pair(impact.a, impact.b); };
+    std::ranges::sort(shared_, {}, [](const Impact& impact) { return std::tuple(impact.a, impact.b, impact.time); });
+    const auto same = std::ranges::unique(shared_, {}, pair_of);  // both bodies may have foreseen it
+    shared_.erase(same.begin(), same.end());
+    std::vector<std::uint32_t> movers;
+    for (const Impact& impact : shared_)
+      for (const std::uint32_t k : {impact.a, impact.b})
+        if (k < bodies.size() && bodies.moves(k)) movers.push_back(k);
+    std::ranges::sort(movers);
+    const auto is_shared = [&](const Impact& impact) {
+      return std::ranges::equal_range(movers, impact.a).size() > 1 ||
+             std::ranges::equal_range(movers, impact.b).size() > 1;
+    };
+    std::ranges::copy_if(shared_, std::back_inserter(apart_), std::not_fn(is_shared));
+    std::erase_if(shared_, std::not_fn(is_shared));
+    std::ranges::sort(apart_, {}, [](const Impact& impact) { return std::tuple(impact.time, impact.a, impact.b); });
+  }
+  /// Up to how much later others are at the same instant: bodies that touch at rest drift apart by rounding, a
+  /// millionth of a radius is much more than that, and much less than what soft contacts yield.
+  [[nodiscard]] static Real instant_of(const Making& making, const Impact& impact) {
+    const auto& bodies = making.bodies;
+    V rate = bodies.v(impact.a);
+    if (impact.b < bodies.size()) rate -= bodies.v(impact.b);
+    const Real speed = length(rate), way = Real(1e-6) * bodies.radius(impact.a) + rounding(bodies, impact.a);
+    return speed > Real(0) ? way / speed : Real(0);
+  }
+  /// Of the place of a body that has gone to and fro.
+  [[nodiscard]] static Real rounding(const SolverBodies<Real, Dim>& bodies, std::uint32_t i) {
+    return 16 * std::numeric_limits<Real>::epsilon() * (length(bodies.x(i)) + bodies.radius(i));
+  }
+  void strike_together(const Making& making) {
+    auto& bodies = making.bodies;
+    const Real time = shared_.front().time;
+    std::vector<std::uint32_t> struck;
+    for (const Impact& impact : shared_) {
+      struck.push_back(impact.a);
+      if (impact.b < bodies.size()) struck.push_back(impact.b);
+    }
+    std::ranges::sort(struck);
+    struck.erase(std::ranges::unique(struck).begin(), struck.end());
+    std::vector<State> states;
+    for (const std::uint32_t k : struck) {
+      go(bodies, k, time);
+      states.push_back(state(bodies, k));
+    }
+    const auto place_of = [&](std::uint32_t k) {
+      return static_cast<std::uint32_t>(std::ranges::lower_bound(struck, k) - struck.begin());
+    };
+    std::vector<Collision<Real, Dim>> collisions;
+    for (const Impact& impact : shared_) {
+      const auto [normal, material] = meeting(making, impact);
+      Collision<Real, Dim>& one = collisions.emplace_back();
+      one.a = place_of(impact.a), one.normal = normal, one.material = material;
+      V rate = -states[one.a].v;
+      if (impact.b < bodies.size()) {
+        one.b = place_of(impact.b);
+        rate += states[one.b].v;
+      }
+      one.acts = dot(rate, normal) < Real(0);
+    }
+    round_.collide(collisions, [&](std::uint32_t k) { return states[k].mover(); });
+    for (std::size_t k = 0; k < shared_.size(); ++k)
+      if (collisions[k].acts) note(making, shared_[k], collisions[k].normal, collisions[k].impulse);
+    for (std::size_t k = 0; k < struck.size(); ++k) put_back(bodies, struck[k], states[k], time);
+    for (const std::uint32_t k : struck) foresee_all(making, k, time);
+  }
+  /// The normal from a to b or into the wall, and the material of both, where they touch.
+  [[nodiscard]] static std::pair<V, Material<Real>> meeting(const Making& making, const Impact& impact) {
+    const auto& bodies = making.bodies;
+    if (impact.b >= bodies.size()) {
+      const Wall<Real, Dim> wall = facing(making.world.walls()[impact.b - bodies.size()], bodies.x(impact.a));
+      return {-wall.normal, combined(making.world.combine_rule, making.material(impact.a), wall.material)};
+    }
+    const V apart = bodies.x(impact.b) - bodies.x(impact.a);
+    const Real distance = length(apart);
+    V normal = apart * (distance > Real(0) ? 1 / distance : Real(0));
+    if (!(distance > Real(0))) normal[0] = Real(1);
+    return {normal, combined(making.world.combine_rule, making.material(impact.a), making.material(impact.b))};
+  }
+
   void strike(const Making& making, const Impact& impact) {
     auto& bodies = making.bodies;
     go(bodies, impact.a, impact.time);
@@ -150,20 +250,13 @@ class Impacts {
     if (impact.b < bodies.size()) {
       go(bodies, impact.b, impact.time);
       State b = state(bodies, impact.b);
-      const V apart = bodies.x(impact.b) - bodies.x(impact.a);
-      const Real distance = length(apart);
-      V normal = apart * (distance > Real(0) ? 1 / distance : Real(0));
-      if (!(distance > Real(0))) normal[0] = Real(1);
-      const Material<Real> both =
-          combined(making.world.combine_rule, making.material(impact.a), making.material(impact.b));
+      const auto [normal, both] = meeting(making, impact);
       if (dot(b.v - a.v, normal) < Real(0)) note(making, impact, normal, collide(a.mover(), b.mover(), normal, both));
       put_back(bodies, impact.b, b, impact.time);
     } else {
       State stand_in{};
-      const Wall<Real, Dim> wall = facing(making.world.walls()[impact.b - bodies.size()], bodies.x(impact.a));
-      const Material<Real> both = combined(making.world.combine_rule, making.material(impact.a), wall.material);
-      if (dot(a.v, wall.normal) < Real(0))
-        note(making, impact, V(-wall.normal), collide(a.mover(), stand_in.mover(), V(-wall.normal), both));
+      const auto [normal, both] = meeting(making, impact);
+      if (dot(a.v, normal) > Real(0)) note(making, impact, normal, collide(a.mover(), stand_in.mover(), normal, both));
     }
     put_back(bodies, impact.a, a, impact.time);
     foresee_all(making, impact.a, impact.time);
@@ -219,6 +312,8 @@ class Impacts {
   }
 
   std::priority_queue<Impact> queue_;
+  std::vector<Impact> apart_, shared_;  // those of an instant
+  CollisionRound<Real, Dim> round_;
 };
 
 }  // namespace continuo
