@@ -51,7 +51,10 @@ class FacetContacts {
     const bool is_beside = inside_facet(V{}) < -body_.reach;
     if (is_beside && mesh_.is_smooth(number)) return false;
     contact.points = is_beside ? CommonPoints<Real, Dim>{} : points_of_face();
-    if (contact.points.empty() && mesh_.is_smooth(number)) return false;
+    if (contact.points.empty() && mesh_.is_smooth(number)) {
+      if (!is_on_seam(of_facet)) return false;
+      contact.points.add({lowest, of_facet.separation, 0});
+    }
     if (!is_certain(contact.points, of_facet.separation) && !find_axis(of_facet, contact)) return false;
     contact.points.drop_beyond(farthest_);
     return !contact.points.empty();
@@ -92,6 +95,14 @@ class FacetContacts {
       }
     }
     return least;
+  }
+  /// Whether the lowest point of a core in front of the facet is above one of its sides, up to rounding: the facets on
+  /// either side of a seam may both find a ball just beside themselves.
+  [[nodiscard]] bool is_on_seam(const Axis& of_facet) const {
+    Real farthest(0);
+    for (const V& corner : facet_.corners) farthest = std::max(farthest, length(corner));
+    const Real rounding = 4 * std::numeric_limits<Real>::epsilon() * (length(pose_.centre) + farthest);
+    return of_facet.separation >= Real(0) && inside_facet(of_facet.on_a) >= -rounding;
   }
   /// How far a point of the body's lowest face is from its other faces.
   [[nodiscard]] Real inside_body(const V& x) const {
