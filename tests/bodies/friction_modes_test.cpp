@@ -53,5 +53,47 @@ TEST(FrictionModes, ImpulsesOfManyContactsObeyCoulombsLaw) {
   }
 }
 
+/// Blocks on a floor, between which machines drive them apart with given accelerations: block p has u[p] + x, with the
+/// same x for all. Their friction is against that, or what holds the one that stays. So x is the zero of a function
+/// that grows, found by bisection; and never do two blocks stick that are driven apart.
+TEST(FrictionModes, BlocksThatAreDrivenApartDoNotAllStick) {
+  std::mt19937 engine(7);
+  const auto number = [&](double low, double high) { return std::uniform_real_distribution(low, high)(engine); };
+  for (int trial = 0; trial < 300; ++trial) {
+    const std::size_t n = 2 + engine() % 8, all = 2 * n;
+    const double g = 9.81, driven = std::pow(10, number(-3, 1));
+    std::vector<double> mass(n), u(n);
+    double total = 0;
+    FrictionProblem<double> problem;
+    for (std::size_t p = 0; p < n; ++p) {
+      mass[p] = number(0.5, 10), u[p] = driven * number(-1, 1), total += mass[p];
+      problem.pair_of_point.push_back(static_cast<std::uint32_t>(p));
+      problem.pairs.push_back({.friction = number(0.1, 1)});
+    }
+    problem.matrix.resize(all * all);
+    problem.rates.assign(n, -g);
+    problem.rates.insert(problem.rates.end(), u.begin(), u.end());
+    for (std::size_t p = 0; p < n; ++p) {
+      problem.matrix[p * all + p] = 1 / mass[p];
+      for (std::size_t q = 0; q < n; ++q) problem.matrix[(n + p) * all + n + q] = 1 / total;
+    }
+    const auto excess = [&](double x) {  // of the inertia over friction
+      double sum = total * x;
+      for (std::size_t p = 0; p < n; ++p) sum += std::copysign(problem.pairs[p].friction * mass[p] * g, u[p] + x);
+      return sum;
+    };
+    double low = -100, high = 100;
+    for (int round = 0; round < 200; ++round) (excess((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+    const auto found = FrictionModes<double>(problem).solve();
+    ASSERT_TRUE(found) << trial;
+    double x = 0;
+    for (std::size_t p = 0; p < n; ++p) x += found->forces[n + p] / total;
+    EXPECT_NEAR(x, low, 1e-7 * g) << trial;
+    for (std::size_t p = 0; p < n; ++p) {
+      if (found->rubbing[p] == Rubbing::sticks) EXPECT_NEAR(u[p] + low, 0, 1e-7 * g) << trial;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuo::friction_modes_test

@@ -78,6 +78,8 @@ class FrictionModes {
   }
 
  private:
+  /// A slip of what sticks that grows faster is no rounding, in units of rates.
+  static constexpr Real least_unmet = std::is_same_v<Real, float> ? Real(1e-3) : Real(1e-8);
   static constexpr Real least_margin = std::is_same_v<Real, float> ? Real(-1e-3) : Real(-1e-9);
 
   /// Changes of what is least consistent can go round in circles: then by pivots, and last by changes of anything that
@@ -276,6 +278,8 @@ class FrictionModes {
     for (std::size_t p = 0; p < of_.pairs.size(); ++p) {
       if (trial.rubbing[p] == Rubbing::sticks) {
         margin = std::min(margin, (most[p] - std::abs(trial.forces[points_ + p])) / force_);
+        // Likewise: joints can drive apart what would have to stick together.
+        if (std::abs(rate(points_ + p)) > least_unmet) margin = -std::numeric_limits<Real>::infinity();
       } else if (trial.rubbing[p] != Rubbing::none) {
         const auto& pair = of_.pairs[p];
         const bool is_open = pair.may_go_forwards && pair.may_go_backwards;  // else it slips already
