@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
+#include <continuo/bodies/exact_rigid/constraint_equations.hpp>
 #include <continuo/bodies/exact_rigid/motion_row.hpp>
 
 namespace continuo {
@@ -62,7 +62,7 @@ class ReducedContacts {
   }
 
   std::size_t joints_, contacts_;
-  MinimumNorm<Real> of_joints_;
+  ConstraintEquations<Real> of_joints_;
   std::vector<Real> coupling_, answer_, matrix_;
 };
 

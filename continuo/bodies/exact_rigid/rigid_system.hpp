@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <continuo/bodies/constrained/constrained_system.hpp>
+#include <continuo/bodies/exact_rigid/constraint_equations.hpp>
 #include <continuo/bodies/exact_rigid/contact_feature.hpp>
 #include <continuo/bodies/exact_rigid/contact_tangents.hpp>
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
@@ -183,7 +184,7 @@ class RigidSystem {
   /// to it, finds those of contacts and limits that are the shortest, as where these were chosen.
   void share_forces() {
     if (rubs_in_space() || kept_.empty() || kept_.size() == rows_.size()) return;
-    MinimumNorm<Real> shortest;
+    ConstraintEquations<Real> shortest;
     std::vector<Real> matrix;
     find_shared_forces(matrix, shortest);
   }
@@ -423,7 +424,7 @@ class RigidSystem {
   }
   /// Of forces that are not determined, the least of contacts and limits that hold, whatever the joints do: as those
   /// with which the contacts were chosen. `matrix` becomes that of the rows that only push, decomposed in `shortest`.
-  void find_shared_forces(std::vector<Real>& matrix, MinimumNorm<Real>& shortest) {
+  void find_shared_forces(std::vector<Real>& matrix, ConstraintEquations<Real>& shortest) {
     const std::vector<bool> is_one_sided = one_sided_rows();
     std::vector<Row> joints, contacts;
     std::vector<Real> of_joints, of_contacts, forces;
@@ -637,7 +638,7 @@ class RigidSystem {
   std::vector<Row> rows_, chosen_;
   std::vector<std::size_t> first_row_of_, normal_of_;  // of joints, of contacts
   std::vector<Real> force_of_row_, matrix_, wanted_;
-  MinimumNorm<Real> system_;
+  ConstraintEquations<Real> system_;
   std::vector<V> force_, linear_, shift_;
   std::vector<S> torque_, angular_, twist_;
   // Of the whole world:
