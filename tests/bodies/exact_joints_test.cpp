@@ -672,5 +672,34 @@ TEST(ExactJoints, ACrankDrivesABlockOverARoughFloor) {
     EXPECT_NEAR(world.position[world.index(heavy)][0], 0, 1e-9) << t;
   }
 }
+// What joints hold twice they hold where they agree: two motors of one speed, and a hinge in the middle of a distance
+// while nothing turns it. Where they do not, that is an error and no compromise.
+TEST(ExactJoints, JointsThatContradictEachOtherAreAnError) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double other : {1.0, 1.5}) {
+    World<double, 2> world;
+    const auto body = require(world.add({.shape = Box<double, 2>{}}));
+    for (const double speed : {1.0, other})
+      require(world.add_joint({.b = body, .motor = JointMotor<double>{speed, infinity}}));
+    ExactMotion motion(world);
+    const Status status = motion.advance_to(1);
+    EXPECT_EQ(static_cast<bool>(status), other == 1) << describe(status);
+    if (other == 1) EXPECT_NEAR(world.orientation[0][0], 1, 1e-12);
+    if (other != 1) EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+  }
+  for (const double spin : {0.0, 1.0}) {
+    World<double, 2> world;
+    const auto a = require(world.add({.position = {{-1, 0}}, .velocity = {{3, -spin}}, .spin = {{spin}}}));
+    const auto b = require(world.add({.position = {{1, 0}}, .velocity = {{3, -spin}}, .spin = {{-spin}}}));
+    require(world.add_joint({.a = a, .b = b}));
+    require(world.add_joint(
+        {.kind = JointKind::distance, .a = a, .b = b, .anchor = world.position[0], .anchor_b = world.position[1]}));
+    ExactMotion motion(world);
+    const Status status = motion.advance_to(1);
+    EXPECT_EQ(static_cast<bool>(status), spin == 0) << describe(status);
+    if (spin == 0) EXPECT_NEAR(world.position[1][0], 4, 1e-12);
+    if (spin != 0) EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+  }
+}
 }  // namespace
 }  // namespace continuo::exact_joints_test

@@ -1,6 +1,7 @@
 // The end of a flight with lasting contacts or motors, within a step: a contact force falls to 0, a contact begins to
 // slip or to stick, a corner comes to lie beside one that touches, a contact leaves its feature, a motor reaches its
-// speed or its greatest force, the force of a limit falls to 0, or a joint bears its strength.
+// speed or its greatest force, the force of a limit falls to 0, a joint bears its strength, or rows that depend on each
+// other no longer agree.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -177,6 +178,8 @@ class ContactGuards {
     return (gap - (held < std::numeric_limits<Real>::infinity() ? held : Real(0))) / pair.part_b.convex->reach;
   }
   [[nodiscard]] std::vector<Real> values(System& system, const Real& t, const X& state) {
+    // Errors of the state within a step leave some disagreement, too.
+    constexpr Real most_disagreement = std::is_same_v<Real, float> ? Real(1e-1) : Real(1e-5);
     system.evaluate(t, state);
     system.share_forces();
     std::vector<Real> all;
@@ -200,6 +203,7 @@ class ContactGuards {
     add_motors(system, all);
     for (std::size_t j = 0; j < system.joints().size(); ++j)
       if (is_held_on_one_side(system.joints()[j])) all.push_back(system.push_of_limit(j) / force_);
+    if (system.has_dependent_rows()) all.push_back(1 - system.disagreement() / most_disagreement);
     const auto breaks = [](const auto& joint) { return has_strength(joint.joint); };
     if (!std::ranges::any_of(system.joints(), breaks)) return all;
     system.find_shortest_forces(t, state);

@@ -861,11 +861,24 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     bool any_breaks = false;
     for (const std::uint32_t group : begun) {
       System& system = groups_[group].flight->system();
+      if (Status fault = check_agreement(system); !fault) return fault;
       any_breaks = break_joints(system, system.pack()) || any_breaks;
     }
     if (!any_breaks) return take_steps(begun);
     for (const std::uint32_t group : begun) land(group);
     return resolve(bodies);
+  }
+  /// Joints that hold the same twice can agree in all positions, as the hinges of a door, or in the present one only.
+  [[nodiscard]] Status check_agreement(System& system) const {
+    constexpr Real most = std::is_same_v<Real, float> ? Real(1e-2) : Real(1e-6);
+    if (!system.has_dependent_rows()) return {};
+    system.evaluate(now_, system.pack());
+    if (std::max(system.disagreement_of_rates(), system.disagreement()) <= most) return {};
+    return cannot_continue(
+        "the joints of body " + std::to_string(system.numbers()[0]) +
+        " and of those that it is joined to hold each other twice, and no forces keep them all, at t = " +
+        std::to_string(now_) +
+        ": as two motors of different speeds about one axis, or a hinge on the line of a distance; take one away");
   }
   /// Makes a group of these bodies, with their joints and lasting contacts.
   [[nodiscard]] std::uint32_t start_group(std::vector<std::uint32_t> bodies, const System& instant,
@@ -914,10 +927,13 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     }
     std::ranges::sort(group.watched);
     group.watched.erase(std::ranges::unique(group.watched).begin(), group.watched.end());
-    const bool may_change = std::ranges::any_of(system.joints(), [](const auto& joint) {
-      return (joint.motor != MotorMode::none && joint.joint.motor->most < never) || has_strength(joint.joint) ||
-             is_held_on_one_side(joint);
-    });
+    const bool may_change =
+        std::ranges::any_of(system.joints(),
+                            [](const auto& joint) {
+                              return (joint.motor != MotorMode::none && joint.joint.motor->most < never) ||
+                                     has_strength(joint.joint) || is_held_on_one_side(joint);
+                            }) ||
+        system.has_dependent_rows();
     if (group.watched.empty() && !may_change) return;
     Real force(0), speed(0);
     for (std::uint32_t k = 0; k < system.moving(); ++k) {

@@ -188,6 +188,29 @@ class RigidSystem {
     std::vector<Real> matrix;
     find_shared_forces(matrix, shortest);
   }
+  /// Whether some rows depend on others, and are kept only where they agree with these.
+  [[nodiscard]] bool has_dependent_rows() const { return !kept_.empty() && kept_.size() < rows_.size(); }
+  /// After `evaluate`: the greatest acceleration of a row that the forces leave, in units of the greatest without them;
+  /// that of rounding, or of errors of the state, where the rows agree.
+  [[nodiscard]] Real disagreement() {
+    Real greatest(0), left(0);
+    for (const Row& row : rows_) greatest = std::max(greatest, std::abs(free_acceleration(row)));
+    find_accelerations();
+    for (const Row& row : rows_) left = std::max(left, std::abs(free_acceleration(row)));
+    return greatest > Real(0) ? left / greatest : Real(0);
+  }
+  /// Likewise, of the rates that rows want in the present state, in units of the greatest.
+  [[nodiscard]] Real disagreement_of_rates() const {
+    Real greatest(0), left(0);
+    for (const Row& row : rows_) {
+      const Real rate = row.rate_of(bodies_[row.a], bodies_[row.b]);
+      greatest = std::max({greatest, std::abs(row.rate), std::abs(rate)});
+      left = std::max(left, std::abs(row.rate - rate));
+    }
+    return greatest > Real(0) && std::ranges::any_of(rows_, [](const Row& row) { return row.rate != Real(0); })
+               ? left / greatest
+               : Real(0);
+  }
   /// Finds how the bodies would move without the forces of joints and contacts.
   void find_free_motion(Real t) {
     find_forces(t);
