@@ -30,6 +30,21 @@ struct Companions {
   Real absolute_tolerance = Real(1e-13);  // of the states, in their units
 };
 
+/// The speed of a motor at a time, and its derivative there.
+template <class Real>
+struct MotorSpeed {
+  Real speed{};   // of the coordinate of the joint, in radians or length per time
+  Real change{};  // its derivative by time
+};
+/// A motor whose speed changes with time: the law replaces the speed of the joint, and leaves there that of the end of
+/// each call. It may jump: then a motor with an infinite `most` strikes its joint. Of balls without joints it does
+/// nothing.
+template <class Real>
+struct MotorLaw {
+  JointHandle joint{};                              // a hinge, slider or wheel with a motor
+  std::function<MotorSpeed<Real>(Real t)> speed{};  // at time t
+};
+
 /// The options of the exact motion, in the units of the world.
 template <class Real>
 struct ExactOptions {
@@ -39,6 +54,7 @@ struct ExactOptions {
   Real tolerance = Real(1e-10);    // of a path under other forces than gravity: relative, and in units of a radius
   Real step = Real(0);             // > 0: such paths by the classical Runge-Kutta method in steps of this size
   std::size_t contact_events = 0;  // at most so many of a call are recorded
+  std::vector<MotorLaw<Real>> motors{};          // those whose speed changes with time
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends as `interrupted`
 
   /// Whether the caller has asked for the end.

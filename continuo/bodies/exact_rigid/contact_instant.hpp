@@ -63,6 +63,21 @@ class ContactInstant {
     for (std::size_t r = 0; r < joints.size(); ++r) shift(joints[r], answers[r]);
   }
 
+  /// A motor without a greatest force strikes a joint that does not have its speed.
+  void turn_motors() {
+    constexpr Real small = std::is_same_v<Real, float> ? Real(1e-4) : Real(1e-8);
+    bool any = false;
+    for (std::size_t j = 0; j < system_.joints().size(); ++j) {
+      const auto& joint = system_.joints()[j];
+      if (joint.motor != MotorMode::keeps_speed || std::isfinite(joint.joint.motor->most)) continue;
+      const Real speed = joint.joint.motor->speed;
+      any = any || std::abs(speed - system_.motor_rate(j)) > small * std::max(std::abs(speed), Real(1));
+    }
+    if (!any) return;
+    const std::vector<Row> joints = system_.struck_joint_rows();
+    apply(joints, ReducedContacts<Real, Dim>(body_data(), joints, {}).answers(joint_rates(joints), {}));
+  }
+
   /// Resolves all impacts. Those that approach are struck together, in rounds, until none approaches: a round can bring
   /// others together. So the energy never grows, and is kept where restitution is 1 and nothing rubs: with u before and
   /// u' = -e u or more after, impulses f add f . (u + u') / 2, and u < 0 of all.
@@ -189,6 +204,8 @@ class ContactInstant {
     for (std::size_t r = 0; r < rows.size(); ++r) apply(rows[r], impulses[r]);
   }
 
+  [[nodiscard]] const ExactBody<Real, Dim>* body_data() const { return std::as_const(system_).bodies().data(); }
+
   template <class Struck>
   [[nodiscard]] Status strike_together(const std::vector<std::size_t>& approaching, bool is_plastic, Struck&& struck) {
     const std::vector<Row> joints = system_.struck_joint_rows();
@@ -222,7 +239,6 @@ class ContactInstant {
     for (std::size_t k = 0; k < approaching.size(); ++k) struck(approaching[k], impulses[rubs ? normal_place(k) : k]);
     return {};
   }
-  [[nodiscard]] const ExactBody<Real, Dim>* body_data() const { return std::as_const(system_).bodies().data(); }
 
   // With friction.
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/exact_options.hpp>
 #include <continuo/bodies/exact_rigid/motion_row.hpp>
 #include <continuo/bodies/joint.hpp>
 #include <continuo/bodies/rigid_stepping/joint_rows.hpp>
@@ -62,12 +63,21 @@ template <class Real, int Dim>
 template <class Real, int Dim>
 struct ActingJoint {
   JointHandle handle{};
-  Joint<Real, Dim> joint{};  // as it was when the motion began
+  Joint<Real, Dim> joint{};  // as it was when the motion began, with the present speed of its motor
   std::uint32_t a = 0, b = 0;
   MotorMode motor = MotorMode::none;
   bool is_overloaded = false;  // at this instant the motor ceases to keep its speed
   LimitSide held = LimitSide::none;
-  bool breaks = false;  // at this instant
+  bool breaks = false;                  // at this instant
+  const MotorLaw<Real>* law = nullptr;  // of its motor
+  Real change{};                        // of the speed of its motor
+
+  /// Gives the motor its speed at time t.
+  void follow_law(const Real& t) {
+    if (!law) return;
+    const MotorSpeed<Real> now = law->speed(t);
+    joint.motor->speed = now.speed, change = now.change;
+  }
 };
 
 template <class Real, int Dim>
@@ -144,7 +154,7 @@ class JointConstraints {
     if (of_.held != LimitSide::none) rows_.push_back(limit(of_.held == LimitSide::both ? LimitSide::lower : of_.held));
     if (of_.motor != MotorMode::keeps_speed) return;
     Row row = driven();
-    row.rate = joint_.motor->speed;
+    row.rate = joint_.motor->speed, row.drift -= of_.change;
     put(row, Real(0));
   }
   /// The row of the coordinate that the motor drives.

@@ -25,6 +25,7 @@
 #include <continuo/bodies/exact_rigid/contact_instant.hpp>
 #include <continuo/bodies/exact_rigid/lasting_journal.hpp>
 #include <continuo/bodies/exact_rigid/limit_search.hpp>
+#include <continuo/bodies/exact_rigid/motor_jumps.hpp>
 #include <continuo/bodies/exact_rigid/near_parts.hpp>
 #include <continuo/bodies/exact_rigid/rigid_flight.hpp>
 #include <continuo/bodies/exact_rigid/safe_time.hpp>
@@ -50,14 +51,13 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
 
   Status advance_to(const Real& t) override {
     if (Status fault = check_world(); !fault) return fault;
-    if (!(world_.time < t)) return {};
-    until_ = t, now_ = world_.time, events_ = 0;
-    load();
-    Status status = begin();
-    while (status && !queue_.empty() && queue_.top().t < until_) status = next();
-    if (status) now_ = until_;
-    store();
-    return status;
+    while (world_.time < t) {
+      // Where a motor jumps to another speed, a flight ends, and the next one begins at the next number.
+      const auto jump = first_jump<Real>(options_.motors, world_.time, t);
+      if (Status fault = fly_to(jump ? jump->before : t); !fault) return fault;
+      if (jump) world_.time = jump->after;
+    }
+    return {};
   }
   void save(ByteWriter& writer) override { transfer(writer); }
   void load(ByteReader& reader) override {
@@ -103,6 +103,16 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
 
   // Begin and end of a call.
 
+  [[nodiscard]] Status fly_to(const Real& t) {
+    if (!(world_.time < t)) return {};
+    until_ = t, now_ = world_.time, events_ = 0;
+    load();
+    Status status = begin();
+    while (status && !queue_.empty() && queue_.top().t < until_) status = next();
+    if (status) now_ = until_;
+    store();
+    return status;
+  }
   [[nodiscard]] Status check_world() const {
     if (options_.step > Real(0))
       return invalid_input("steps of a fixed size exist in the exact motion of balls without joints only");
@@ -118,6 +128,11 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (!world_.contains(joint.b) || (joint.a != BodyHandle{} && !world_.contains(joint.a)))
         return invalid_input("a joint connects a body that the world does not contain");
       if (Status fault = check_exactly_movable(joint); !fault) return fault;
+    }
+    for (const MotorLaw<Real>& law : options_.motors) {
+      const Joint<Real, Dim>* const joint = world_.find(law.joint);
+      if (!joint || !joint->motor || !law.speed)
+        return invalid_input("a law of a motor is of a joint that has none: see ExactOptions::motors");
     }
     return check_motion(world_);
   }
@@ -140,6 +155,9 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       if (bodies_[acting.a].is_fixed() && bodies_[acting.b].is_fixed()) continue;
       if (joint.motor) acting.motor = MotorMode::keeps_speed;
       acting.held = lasting_limit(joint);
+      for (const MotorLaw<Real>& law : options_.motors)
+        if (law.joint == handle) acting.law = &law;
+      acting.follow_law(now_);
       (joint.is_broken ? broken : joints_).push_back(std::move(acting));
     }
     near_.begin(world_, joints_, broken);
@@ -211,6 +229,10 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       kept_[i] = {body.orientation, body.spin, body.momentum, body.energy.value_or(Real(0)), body.energy.has_value()};
     }
     store_joints();
+    for (auto& joint : joints_) {
+      joint.follow_law(now_);
+      if (joint.law) world_.find(joint.handle)->motor->speed = joint.joint.motor->speed;
+    }
     for (const auto& group : groups_)
       if (group.flight) note_impulses(group);
     world_.time = now_;
@@ -526,6 +548,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     for (auto& joint : joints_) {
       if (!is_gathered_[joint.a] && !is_gathered_[joint.b]) continue;
       joint.held = lasting_limit(joint.joint);
+      joint.follow_law(now_);
       instant.add(joint, bodies_);
     }
     std::vector<Point> points = find_points(instant, bodies);
@@ -550,6 +573,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     constexpr Real dip = std::is_same_v<Real, float> ? Real(0) : ContactGuards<Real, Dim>::small;
     const Real least_fall = 2 * std::sqrt(2 * pull * dip * reach);
     ContactInstant<Real, Dim> resolver(instant, points, std::max(Real(pull * contact_time_), least_fall), noise);
+    resolver.turn_motors();
     Status status = resolver.strike([&](std::size_t k, const Real& impulse) {
       if (impulse > Real(0)) note_impact(instant, points[k], impulse);
     });

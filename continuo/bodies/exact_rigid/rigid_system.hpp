@@ -160,6 +160,7 @@ class RigidSystem {
       body.turn_with_momentum();
     }
     for (std::size_t k = moving_; k < bodies_.size(); ++k) drive(bodies_[k], start_[k - moving_], t - begin_);
+    for (auto& joint : joints_) joint.follow_law(t);
   }
   /// Where a fixed body is after a time: one that is driven moves on with its velocity and spin.
   static void drive(Body& body, const Body& start, const Real& duration) {
