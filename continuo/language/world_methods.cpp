@@ -11,13 +11,6 @@ namespace continuo::model {
 
 namespace {
 
-/// Whether an expression changes in a run: with the time, a state or an input.
-bool changes(const Model& model, NodeId node) {
-  return std::ranges::any_of(variables_of(model.graph, std::vector{node}), [&](std::uint32_t variable) {
-    return variable < model.layout.parameters || variable >= model.layout.inputs;
-  });
-}
-
 /// Whether a force reads how a body stands or spins: behind its places and velocities.
 bool reads_turns(const WorldDescription& world, const Model& model, const ForceDescription& force) {
   const auto axes = static_cast<std::size_t>(world.dimension);
@@ -31,6 +24,17 @@ bool reads_turns(const WorldDescription& world, const Model& model, const ForceD
 }
 
 }  // namespace
+
+bool changes(const Model& model, NodeId node) {
+  return std::ranges::any_of(variables_of(model.graph, std::vector{node}), [&](std::uint32_t variable) {
+    return variable < model.layout.parameters || variable >= model.layout.inputs;
+  });
+}
+bool reads_states(const Model& model, NodeId node) {
+  return std::ranges::any_of(variables_of(model.graph, std::vector{node}), [&](std::uint32_t variable) {
+    return variable != Layout::time && variable < model.layout.parameters;
+  });
+}
 
 std::vector<std::string> world_integrators() {
   return {"semi_implicit_euler", "symplectic_euler_position_first", "implicit_euler", "central_difference",
@@ -67,8 +71,8 @@ std::vector<ExactRefusal> exact_refusals(const WorldDescription& world, const Mo
   }
   for (const MeshDescription& mesh : world.meshes) refuse("meshes and no chains", mesh.span);
   for (const JointDescription& joint : world.joints) {
-    if (joint.motor_speed.valid() && changes(model, joint.motor_speed))
-      refuse("motors whose speed changes", joint.span);
+    if (joint.motor_speed.valid() && reads_states(model, joint.motor_speed))
+      refuse("motors whose speed depends on states", joint.span);
     if (joint.kind == "pull" &&
         std::ranges::any_of(joint.target, [&](NodeId node) { return node.valid() && changes(model, node); }))
       refuse("pulls whose target changes", joint.span);

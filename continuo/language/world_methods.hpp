@@ -18,6 +18,12 @@ namespace continuo::model {
 /// Those of them that move this world; the model is that of the world.
 [[nodiscard]] std::vector<std::string> world_methods(const WorldDescription& world, const Model& model);
 
+/// Whether an expression changes in a run, with the time, a state or an input; and whether it reads a state.
+/// @{
+[[nodiscard]] bool changes(const Model& model, NodeId node);
+[[nodiscard]] bool reads_states(const Model& model, NodeId node);
+/// @}
+
 /// Something that the exact motion does not move, and where it stands.
 struct ExactRefusal {
   std::string message;  // "the exact motion knows no springs of joints"

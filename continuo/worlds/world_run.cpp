@@ -16,6 +16,7 @@
 #include <continuo/worlds/characters.hpp>
 #include <continuo/worlds/coupled_equations.hpp>
 #include <continuo/worlds/joint_states.hpp>
+#include <continuo/worlds/motor_laws.hpp>
 #include <continuo/worlds/world_run.hpp>
 #include <continuo/worlds/world_shapes.hpp>
 
@@ -50,6 +51,7 @@ class Moving final : public WorldRun {
         variables_(variables.begin(), variables.end()),
         coupled_(*program_, variables),
         drives_(*program_, variables),
+        motor_laws_(*program_, variables),
         characters_(*program_, variables),
         start_(variables[model::Layout::time]) {
     const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
@@ -345,6 +347,7 @@ class Moving final : public WorldRun {
   void set_everywhere(std::uint32_t variable, double value) {
     coupled_.set(variable, value);
     if (!drives_.is_empty()) drives_.set(variable, value);
+    motor_laws_.set(variable, value);
     characters_.set(variable, value);
   }
 
@@ -363,8 +366,10 @@ class Moving final : public WorldRun {
       return node.valid() ? evaluate(model(), node, variables_) : otherwise;
     };
     if (options_.method == "exact" || options_.method == "dop853" || options_.method == "rk4") {
-      ExactOptions<double> options{
-          .tolerance = options_.tolerance, .contact_events = options_.most_contacts, .interrupt = options_.interrupt};
+      ExactOptions<double> options{.tolerance = options_.tolerance,
+                                   .contact_events = options_.most_contacts,
+                                   .motors = motor_laws_.laws(joints_),
+                                   .interrupt = options_.interrupt};
       if (mode.contact_time.valid()) options.contact_time = evaluate(model(), mode.contact_time, variables_);
       if (options_.method == "rk4") options.step = options_.step;
       // The exact motion of shapes and joints has no companions; what acts without equations are laws of the world.
@@ -475,6 +480,7 @@ class Moving final : public WorldRun {
   std::vector<std::uint32_t> set_;  // parameters that were set
   CoupledEquations<Dim> coupled_;
   JointDrives drives_;
+  MotorLaws motor_laws_;
   Characters<Dim> characters_;
   World<double, Dim> world_;
   static constexpr double hertz_of_hand = 5;

@@ -93,6 +93,19 @@ TEST(ExactMotors, LagWhereTheirForceDoesNotSuffice) {
   expect_lag<3>();
 }
 
+// So strong that the rounding of the time makes an error of the speed beyond that of other motors: it has its speed at
+// once, and does not chatter about it.
+TEST(ExactMotors, StrongOnesDoNotChatter) {
+  for (const double most : {1e3, 1e6, 1e9}) {
+    Turned<2> of([](double t) { return MotorSpeed<double>{t < 0.3 ? 2.0 : -1.0, 0}; }, most);
+    ExactMotion motion(of.world, {.most_events = 1000, .motors = {{of.joint, of.law}}});
+    advance(motion, 1);
+    const double pull = most / of.inertia;  // from 0 to 2, and from there to -1
+    EXPECT_NEAR(of.angle(), 0.6 - 2 / pull - (0.7 - 4.5 / pull), 1e-9) << most;
+    EXPECT_NEAR(of.spin(), -1, 1e-12) << most;
+  }
+}
+
 /// Jumps, once between the ends of calls, and once in a pulse of a hundredth.
 TEST(ExactMotors, StrikeTheirJointWhereTheirSpeedJumps) {
   Turned<2> of(

@@ -90,6 +90,27 @@ TEST(ExactShapes, AHandDrawsABody) {
   ASSERT_TRUE(run->advance_to(3));
 }
 
+// By time, by a jump in it, and by an input that is set: the angle is the integral of the speed.
+TEST(ExactShapes, AMotorFollowsItsSpeed) {
+  const model::Run wave = run_of(
+      "world { mode exact\n body wheel at (0, 0) box (1, 1)\n"
+      "hinge wheel at (0, 0) motor 3*sin(2*t) torque at most 100 }\nrun 0..2\n");
+  EXPECT_NEAR(last(wave, "wheel.angle"), 1.5 * (1 - std::cos(4)), 1e-9);
+  const std::string text =
+      "input pace = 1 in -4..4 key \"w\"\n"
+      "world { mode exact\n body wheel at (0, 0) box (1, 1)\n body door at (5, 0) box (1, 1)\n"
+      "hinge wheel at (0, 0) motor pace*t torque at most 1e6\n"
+      "hinge door at (5, 0) motor if t < 0.3 then 2 else -1 torque at most 1e6 }\nrun 0..9\n";
+  const auto run = started(text);
+  ASSERT_TRUE(run->advance_to(1));
+  const auto angle = [&](std::size_t i) { return run->state()[6 * i + 4]; };
+  EXPECT_NEAR(angle(0), 0.5, 1e-9);
+  EXPECT_NEAR(angle(1), 0.6 - 0.7, 1e-5);  // a great torque takes a millionth of a second
+  ASSERT_TRUE(run->set(program_of(text)->model.inputs[0].variable, 0));
+  ASSERT_TRUE(run->advance_to(2));
+  EXPECT_NEAR(angle(0), 0.5, 1e-5);
+}
+
 // What a model is refused for when it is read, is what the motion says where it is not asked before.
 TEST(ExactShapes, RefusalsAreThoseOfTheMotion) {
   constexpr std::array items = {"body c at (5, 0) box (1, 1) sensor", "body c at (5, 0) box (1, 1) rolling 0.1"};

@@ -700,7 +700,12 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
       const bool is_overloaded = std::exchange(joint.is_overloaded, false);
       if (joint.motor == MotorMode::none || !(joint.joint.motor->most < never) || is_overloaded) continue;
       const Real speed = joint.joint.motor->speed, behind = speed - instant.motor_rate(k);
-      const bool keeps = std::abs(behind) <= near * std::max(std::abs(speed), Real(1));
+      // What a strong motor does to the speed within the rounding of the time is no lag.
+      const auto row = instant.driven_row(instant.joints()[k]);
+      const Real pull = joint.joint.motor->most * response(row, row, std::as_const(instant).bodies().data());
+      const Real least =
+          std::max(Real(near * std::max(std::abs(speed), Real(1))), Real(16 * rounding * std::abs(now_) * pull));
+      const bool keeps = std::abs(behind) <= least;
       set(k, keeps ? MotorMode::keeps_speed : behind > Real(0) ? MotorMode::forwards : MotorMode::backwards);
       any_keeps = any_keeps || keeps;
     }
