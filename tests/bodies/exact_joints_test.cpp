@@ -684,8 +684,12 @@ TEST(ExactJoints, JointsThatContradictEachOtherAreAnError) {
     ExactMotion motion(world);
     const Status status = motion.advance_to(1);
     EXPECT_EQ(static_cast<bool>(status), other == 1) << describe(status);
-    if (other == 1) EXPECT_NEAR(world.orientation[0][0], 1, 1e-12);
-    if (other != 1) EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+    if (other == 1) {
+      EXPECT_NEAR(world.orientation[0][0], 1, 1e-12);
+    }
+    if (other != 1) {
+      EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+    }
   }
   for (const double spin : {0.0, 1.0}) {
     World<double, 2> world;
@@ -697,8 +701,12 @@ TEST(ExactJoints, JointsThatContradictEachOtherAreAnError) {
     ExactMotion motion(world);
     const Status status = motion.advance_to(1);
     EXPECT_EQ(static_cast<bool>(status), spin == 0) << describe(status);
-    if (spin == 0) EXPECT_NEAR(world.position[1][0], 4, 1e-12);
-    if (spin != 0) EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+    if (spin == 0) {
+      EXPECT_NEAR(world.position[1][0], 4, 1e-12);
+    }
+    if (spin != 0) {
+      EXPECT_THAT(status.message, testing::HasSubstr("hold each other twice"));
+    }
   }
 }
 }  // namespace

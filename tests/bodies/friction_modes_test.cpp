@@ -90,7 +90,9 @@ TEST(FrictionModes, BlocksThatAreDrivenApartDoNotAllStick) {
     for (std::size_t p = 0; p < n; ++p) x += found->forces[n + p] / total;
     EXPECT_NEAR(x, low, 1e-7 * g) << trial;
     for (std::size_t p = 0; p < n; ++p) {
-      if (found->rubbing[p] == Rubbing::sticks) EXPECT_NEAR(u[p] + low, 0, 1e-7 * g) << trial;
+      if (found->rubbing[p] == Rubbing::sticks) {
+        EXPECT_NEAR(u[p] + low, 0, 1e-7 * g) << trial;
+      }
     }
   }
 }

@@ -60,6 +60,49 @@ TEST(RigidMotion, FrictionHoldsAndSlipsAtItsAngle) {
   for (const double excess : {-0.01, 0.01, 0.5}) expect_friction_of<2>(excess), expect_friction_of<3>(excess);
 }
 
+// What rolls on a floor stays at its height and keeps its speed: its contact neither turns with it nor drops behind.
+template <int Dim>
+void rolls_evenly(const Shape<double, Dim>& shape, const Orientation<double, Dim>& orientation) {
+  for (const double speed : {0.0, 0.01, 1.0, 10.0}) {
+    SCOPED_TRACE(speed);
+    World<double, Dim> world;
+    constexpr std::size_t up = Dim - 1;
+    world.gravity[up] = -10;
+    Vector<double, Dim> size, under;
+    for (double& side : size.components) side = 400;
+    size[up] = 2, under[up] = -1;
+    const Material<double> rough{.friction = 0.8};
+    ASSERT_TRUE(world.add({.shape = Box<double, Dim>{size}, .position = under, .fixed = true, .material = rough}));
+    Vector<double, Dim> start, velocity;
+    start[up] = 0.5, velocity[0] = speed;
+    Spin<double, Dim> spin;
+    spin[Dim == 2 ? 0 : 1] = (Dim == 2 ? -1 : 1) * speed / 0.5;
+    const BodyHandle body = *world.add({.shape = shape,
+                                        .position = start,
+                                        .velocity = velocity,
+                                        .orientation = orientation,
+                                        .spin = spin,
+                                        .mass = 1.0,
+                                        .material = rough});
+    FastMotion<double, Dim> motion(world, {.step = 1.0 / 60});
+    const std::size_t i = world.index(body);
+    // The search for closest points ends where it would gain 4 eps of the floor's reach of 283, so that at a distance
+    // of 0.5 the normal is within sqrt(2 * 4 eps * 283 / 0.5) of its place.
+    const double rounding = 1e-9 + 1e-6 * speed;
+    for (int k = 0; k < 300; ++k) {
+      ASSERT_TRUE(motion.advance());
+      EXPECT_NEAR(world.position[i][up], 0.5, rounding);
+      EXPECT_NEAR(world.velocity[i][up], 0, rounding);
+    }
+    EXPECT_NEAR(world.velocity[i][0], speed, rounding);
+    EXPECT_NEAR(world.position[i][0], 5 * speed, 5 * rounding);
+  }
+}
+TEST(RigidMotion, WhatRollsKeepsItsHeightAndItsSpeed) {
+  rolls_evenly<2>(Sphere<double>{}, upright<double, 2>()), rolls_evenly<3>(Sphere<double>{}, upright<double, 3>());
+  const double half = std::sqrt(0.5);
+  rolls_evenly<3>(Capsule<double>{}, {{half, half, 0, 0}});
+}
 TEST(RigidMotion, FreeFlightIsAParabola) {
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};

@@ -333,8 +333,12 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
     const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
     L bias = point[At::separation], of_mass = one, of_impulse = zero;
     if constexpr (pass != ManifoldPass::rebound) {
-      const L apart = point[At::separation] + dot(normal_, of_b.moved - of_a.moved) +
-                      (dot(arm_b, of_b.turned_normal) - dot(arm_a, of_a.turned_normal));
+      L apart = point[At::separation] + dot(normal_, of_b.moved - of_a.moved) +
+                (dot(arm_b, of_b.turned_normal) - dot(arm_a, of_a.turned_normal));
+      // The core alone turns with its body: a ball that rolls is as far from the floor as before.
+      if (head_.is_round)
+        apart += rows_[At::rounding_a] * dot(normal_, of_a.turned_normal) +
+                 rows_[At::rounding_b] * dot(normal_, of_b.turned_normal);
       const auto is_apart = apart > zero;  // then it may close within the substep
       const L closing = apart * L(1 / task_.h);
       if constexpr (pass == ManifoldPass::push) {

@@ -19,7 +19,9 @@ struct ManifoldLayout {
   static constexpr std::size_t friction = Dim == 2 ? 2 : 6;
   static constexpr std::size_t inertia_a = friction + 1;
   static constexpr std::size_t inertia_b = inertia_a + of_inertia;
-  static constexpr std::size_t points = inertia_b + of_inertia;
+  static constexpr std::size_t rounding_a = inertia_b + of_inertia;  // read where one of them is not 0
+  static constexpr std::size_t rounding_b = rounding_a + 1;
+  static constexpr std::size_t points = rounding_b + 1;
   // Of a point:
   static constexpr std::size_t arm_a = 0;
   static constexpr std::size_t arm_b = Dim;
@@ -39,6 +41,7 @@ struct BatchHead {
   std::uint8_t points = 0;  // of the manifold with the most
   bool is_a_fixed = false;  // whether some of the bodies a never move: they are not written
   bool is_b_fixed = false;  // likewise
+  bool is_round = false;    // whether some of the bodies are rounded
   bool is_deep = false;     // whether some of the points are
   bool is_meant = true;     // whether the pass of impacts is for some of the manifolds
 };

@@ -180,6 +180,7 @@ class ManifoldSolver {
       head.is_a_fixed |= coloured_[member].a == ColouredContact::none;
       head.is_b_fixed |= coloured_[member].b == ColouredContact::none;
       a_[batch * kernels_.lanes + lane] = found.a, b_[batch * kernels_.lanes + lane] = found.b;
+      head.is_round |= found.contact.rounding_a + found.contact.rounding_b > Real(0);
       fill_lane(batch, lane, found.contact, inertias_[found.a], inertias_[found.b]);
     }
   }
@@ -195,6 +196,7 @@ class ManifoldSolver {
     if constexpr (Dim == 3) put(At::across, across[0]);
     rows[At::friction * lanes] = contact.friction;
     put(At::inertia_a, inertia_a), put(At::inertia_b, inertia_b);
+    rows[At::rounding_a * lanes] = contact.rounding_a, rows[At::rounding_b * lanes] = contact.rounding_b;
     for (std::size_t p = 0; p < contact.size; ++p) {
       const auto& point = contact.points[p];
       put(row(p, At::arm_a), point.arm_a), put(row(p, At::arm_b), point.arm_b);

@@ -45,6 +45,7 @@ struct RigidContact {
   static constexpr std::size_t most_points = Manifold<Real, Dim>::most_points;
   std::size_t size = 0;  // of the points: at the beginning, where the bodies are, for those who need no more
   Real friction{}, restitution{};
+  Real rounding_a{}, rounding_b{};  // of the parts that touch
   Vector<Real, Dim> normal{};       // from a to b, in the world
   Vector<Real, Dim> normal_in_a{};  // the same, in the frame of a
   Pose<Real, Dim> found_at{};       // of b in the frame of a, when the points were found
@@ -87,7 +88,8 @@ template <class Real, int Dim>
 /// normal is fixed to a, each point to both bodies, so that the separation is right up to the square of the rotation.
 /// `size` is that of the smaller body. Returns false where they have moved, where points farther apart count now, or
 /// where none is near enough to count any more: then points are to be found anew, which costs ten times as much. So
-/// what has a contact is always near, and a pair, also in a run that goes on from a snapshot.
+/// what has a contact is always near, and a pair, also in a run that goes on from a snapshot. Neither of them is
+/// rounded: where such a body rolls, neither the normal nor the points turn with it.
 template <class Real, int Dim>
 [[nodiscard]] bool follow(RigidContact<Real, Dim>& contact, const Real& margin, const Real& size,
                           const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
@@ -111,13 +113,24 @@ template <class Real, int Dim>
   return nearest <= margin;
 }
 
+/// How far the turn of a rounded body since the step began moves its surface less than its points: what is along the
+/// normal from the core stays there. With the turn R, that is rounding n . (R n - n).
+template <class Real, int Dim>
+[[nodiscard]] Real turn_of_rounding(const Real& rounding, const Vector<Real, Dim>& normal,
+                                    const RigidBody<Real, Dim>& body) {
+  if (rounding == Real(0)) return Real(0);
+  const Pose<Real, Dim> before{{}, rotation(body.orientation_before)};
+  return rounding * (dot(normal, body.axes * before.local_direction(normal)) - 1);
+}
+
 /// How far apart the surfaces are now at a point of a contact.
 template <class Real, int Dim>
 [[nodiscard]] Real separation(const RigidContact<Real, Dim>& contact, const RigidContactPoint<Real, Dim>& point,
                               const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
   const Vector<Real, Dim> shifted =
       (b.moved - a.moved) + (b.axes * point.local_b - point.arm_b) - (a.axes * point.local_a - point.arm_a);
-  return point.separation + dot(shifted, contact.normal);
+  return point.separation + dot(shifted, contact.normal) + turn_of_rounding(contact.rounding_a, contact.normal, a) +
+         turn_of_rounding(contact.rounding_b, contact.normal, b);
 }
 
 /// How the contacts of a step are to be held apart.

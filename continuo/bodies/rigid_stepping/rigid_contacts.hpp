@@ -248,6 +248,7 @@ class RigidContacts {
           greatest = cosine, old = &one.contact;
       PartContact<Real, Dim>& made = found.emplace_back(PartContact<Real, Dim>{pair, a, ground, {}});
       made.contact = contact_of(touching, pose, margin, bodies[a], bodies[ground], old);
+      made.contact.rounding_a = part.rounding;
       made.contact.friction = both.friction, made.contact.restitution = both.restitution;
     });
   }
@@ -270,7 +271,8 @@ class RigidContacts {
       const RigidPart<Real, Dim>& part_b = parts[found.parts.b];
       const PlacedPart<Real, Dim>& placed_b = pairs.placed(found.parts.b);
       const Real size = std::min(placed_a.reach, placed_b.reach);
-      if (!follow(found.contact, margin, size, bodies[a], bodies[b])) {
+      const bool is_round = part_a.rounding + part_b.rounding > Real(0);
+      if (is_round || !follow(found.contact, margin, size, bodies[a], bodies[b])) {
         const Pose<Real, Dim> b_in_a = relative(pose, placed_b.pose);
         const Manifold<Real, Dim> touching =
             part_a.is_box() && part_b.is_box()
@@ -280,6 +282,8 @@ class RigidContacts {
       }
     }
     if (found.contact.size == 0) return;
+    found.contact.rounding_a = part_a.rounding,
+    found.contact.rounding_b = is_wall ? Real(0) : parts[found.parts.b].rounding;
     const Material<Real>&of_a = world.material[a], &of_b = is_wall ? world.walls()[wall].material : world.material[b];
     found.contact.friction = combined(world.combine_rule.friction, of_a.friction, of_b.friction);
     found.contact.restitution = combined(world.combine_rule.restitution, of_a.restitution, of_b.restitution);

@@ -36,7 +36,8 @@ struct RigidPart {
   std::uint32_t body = 0;
   const Convex<Real, Dim>* convex = nullptr;
   Pose<Real, Dim> in_body{};
-  Real reach{};              // of the convex body
+  Real reach{};  // of the convex body
+  Real rounding{};
   Real inner_radius{};       // of a ball around the centre that is within the part
   Vector<Real, Dim> half{};  // the sides, of a box; 0 of others
 
@@ -72,14 +73,14 @@ class RigidPairs {
       solids_.push_back(world.shared_solid(i));
       if (const Solid<Real, Dim>* const solid = world.solid(i)) {
         for (const SolidPart<Real, Dim>& part : solid->parts)
-          parts_.push_back(
-              {i, &part.convex, part.in_solid, part.convex.reach, inner_radius(part.convex), half_sides(part.convex)});
+          parts_.push_back({i, &part.convex, part.in_solid, part.convex.reach, part.convex.rounding,
+                            inner_radius(part.convex), half_sides(part.convex)});
         continue;
       }
       Convex<Real, Dim>& ball = balls_.emplace_back();
       ball.core.corners = {V{}};
       ball.rounding = ball.reach = world.radius[i];
-      parts_.push_back({i, &ball, {}, ball.reach, ball.rounding, {}});
+      parts_.push_back({i, &ball, {}, ball.reach, ball.rounding, ball.rounding, {}});
     }
     least_inner_radius_ = std::numeric_limits<Real>::infinity();
     for (const RigidPart<Real, Dim>& part : parts_)
