@@ -12,6 +12,7 @@
 
 namespace continuo::worlds {
 
+/// The laws of the motors of a program; without any where no speed changes.
 class MotorLaws {
  public:
   /// Of all motors whose speed depends on time, or on inputs, but on no state. `variables` is a register file as
