@@ -117,7 +117,9 @@ struct BoxSide {
   Real half{};  // of its length
   std::uint32_t number = 0;
 
+  /// From its first corner to the next one, of length 1.
   [[nodiscard]] Vector<Real, 2> tangent() const { return {{-normal[1], normal[0]}}; }
+  /// The number of the corner where it ends.
   [[nodiscard]] std::uint32_t next() const { return (number + 1) % 4; }
 };
 
