@@ -81,7 +81,8 @@ void step(const World<Real, Dim>& start, RandomNumbers<Real>& numbers, Tally& ta
   std::vector<std::uint64_t> hashes = hashes_of(world, motion, half);
   const Bytes bytes = snapshot(world, motion);
   const std::vector<std::uint64_t> rest = hashes_of(world, motion, half);
-  hashes.insert(hashes.end(), rest.begin(), rest.end());
+  // A step that was refused may be possible when it is tried again, as the impulses of before are gone.
+  if (hashes.size() == half) hashes.insert(hashes.end(), rest.begin(), rest.end());
   ++(hashes.size() == 2 * half ? tally.stepped : tally.stopped);
 
   World<Real, Dim> restored;
