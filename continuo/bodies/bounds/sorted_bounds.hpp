@@ -22,6 +22,11 @@ namespace continuo {
 template <class Real, int Dim>
 class SortedBounds {
  public:
+  /// With so many each may be compared where that is to be faster than a tree.
+  static constexpr std::size_t most_compared = 200;
+  /// And so many in all of `count` bounds that lie as unevenly as worlds do.
+  [[nodiscard]] static constexpr std::size_t most_of(std::size_t count) { return 8 * most_compared * count; }
+
   /// Takes the bounds and sorts them along the axis on which they are spread most. In O(n) where the order is nearly
   /// that of the last time, else in O(n log n). Returns false, and does nothing, where one of them is empty or not
   /// finite, or where, spread evenly, each would be compared with more than `most`.

@@ -175,10 +175,10 @@ class StoppingTimes {
       if ((passes[k] | passes[n]) == 0 || !matters(fast_[k], fast_[n])) return;
       near_.push_back({fast_[k], fast_[n]}), near_.push_back({fast_[n], fast_[k]});
     };
-    constexpr std::size_t most_compared = 200;  // with each, as the pairs of parts
-    SortedBounds<Real, Dim> sorted;
-    if (sorted.sort(swept_, most_compared) &&
-        sorted.for_each_pair(0, sorted.size(), 8 * most_compared * sorted.size(), meet))
+    using Sorted = SortedBounds<Real, Dim>;
+    Sorted sorted;
+    if (sorted.sort(swept_, Sorted::most_compared) &&
+        sorted.for_each_pair(0, sorted.size(), Sorted::most_of(sorted.size()), meet))
       return;
     near_.clear();
     BoundsTree<Real, Dim>(swept_).for_each_pair(meet);

@@ -209,7 +209,8 @@ class RigidPairs {
   /// slower than to look them up in the tree: there are few, or too many beside each other along the axis.
   template <class MayTouch>
   [[nodiscard]] bool sweep(ThreadTeam& team, bool are_all, MayTouch&& may_touch) {
-    if (moved_.size() * 8 < parts_.size() || !sorted_.sort(rooms_, most_compared)) return false;
+    if (moved_.size() * 8 < parts_.size() || !sorted_.sort(rooms_, SortedBounds<Real, Dim>::most_compared))
+      return false;
     const std::size_t most = most_near_pairs(parts_.size());
     const std::size_t blocks = std::clamp<std::size_t>(parts_.size() / 64, 1, 256);
     found_.resize(blocks + 1);
@@ -222,7 +223,7 @@ class RigidPairs {
         if ((are_all || has_moved_[i] || has_moved_[j]) && found.size() <= most && may_touch(i, j))
           found.push_back({std::min(i, j), std::max(i, j)});
       };
-      if (!sorted_.for_each_pair(from, to, 8 * most_compared * (to - from), visit)) is_slow = true;
+      if (!sorted_.for_each_pair(from, to, SortedBounds<Real, Dim>::most_of(to - from), visit)) is_slow = true;
     });
     found_.back().clear();
     return !is_slow;
@@ -374,7 +375,6 @@ class RigidPairs {
 
  private:
   static constexpr Real part_of_margin = Real(0.25);
-  static constexpr std::size_t most_compared = 200;  // with each part, where that pays
 
   std::vector<RigidPart<Real, Dim>> parts_;
   std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;       // of each body; the parts refer to them
