@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -19,6 +20,7 @@
 
 namespace continuo {
 
+/// Bounds in order. A search changes nothing, so that many threads may search at once.
 template <class Real, int Dim>
 class SortedBounds {
  public:

@@ -175,6 +175,12 @@ class StoppingTimes {
       if ((passes[k] | passes[n]) == 0 || !matters(fast_[k], fast_[n])) return;
       near_.push_back({fast_[k], fast_[n]}), near_.push_back({fast_[n], fast_[k]});
     };
+    if (passing_.size() * fast_.size() <= most_tests) {
+      for (const std::uint32_t k : passing_)
+        for (std::uint32_t n = 0; n < swept_.size(); ++n)
+          if ((passes[n] == 0 || n > k) && !are_apart(swept_[k], swept_[n])) meet(k, n);
+      return;
+    }
     using Sorted = SortedBounds<Real, Dim>;
     Sorted sorted;
     if (sorted.sort(swept_, Sorted::most_compared) &&
