@@ -17,6 +17,12 @@ struct Scene {
   std::vector<RigidBody<Real, Dim>> bodies;
   std::vector<PartContact<Real, Dim>> contacts;
   std::vector<std::uint32_t> which;
+
+  [[nodiscard]] std::vector<ContactHead> heads() const {
+    std::vector<ContactHead> all;
+    for (const PartContact<Real, Dim>& found : contacts) all.push_back(head_of(found));
+    return all;
+  }
 };
 
 class Numbers {
@@ -80,7 +86,7 @@ template <class Real, int Dim>
 std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim>& kernels) {
   ThreadTeam team(1);
   ManifoldSolver<Real, Dim> solver(team, kernels);
-  solver.begin(scene.bodies, scene.contacts, scene.which);
+  solver.begin(scene.bodies, scene.contacts, scene.heads(), scene.which);
   const Real h = Real(1) / 240;
   solver.set_hardness(h, softness(Real(30), Real(10), h), Real(4));
   std::vector<Real> numbers;

@@ -1,5 +1,6 @@
 // Colours of contacts: two contacts of a colour share no body that moves, so that they can be solved at once.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -14,6 +15,7 @@ struct ColouredContact {
   static constexpr std::uint32_t none = 0xffffffff;
   std::uint32_t a = none, b = none;
   std::uint8_t points = 0;  // contacts with more of them come first within their colour
+  friend bool operator==(const ColouredContact&, const ColouredContact&) = default;
 };
 
 /// Contacts in the order of their colours. Those that have one body that never moves come last, so that what holds a
@@ -24,7 +26,10 @@ class ContactColours {
   /// Contacts of the last colour may share bodies: those for which the others were not enough.
   [[nodiscard]] static bool is_shared(std::size_t colour) { return colour == most - 1; }
 
-  void find(std::span<const ColouredContact> contacts, std::size_t bodies) {
+  /// Returns false where they are the contacts of the last call, as in a heap at rest: then the colours are the same.
+  bool find(std::span<const ColouredContact> contacts, std::size_t bodies) {
+    if (std::ranges::equal(contacts, contacts_)) return false;
+    contacts_.assign(contacts.begin(), contacts.end());
     used_.assign(bodies, 0);
     colour_.resize(contacts.size());
     first_ = {};
@@ -32,6 +37,7 @@ class ContactColours {
       for (std::size_t k = 0; k < contacts.size(); ++k)
         if (has_fixed(contacts[k]) == is_last) colour_[k] = choose(contacts[k]);
     sort(contacts);
+    return true;
   }
   /// The contacts of a colour, with those of most points first.
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t colour) const {
@@ -73,6 +79,7 @@ class ContactColours {
       order_[next[std::min(place(k), next.size() - 2)]++] = static_cast<std::uint32_t>(k);
   }
 
+  std::vector<ColouredContact> contacts_;
   std::vector<std::uint64_t> used_;   // colours of each body
   std::vector<std::uint8_t> colour_;  // of each contact
   std::vector<std::uint32_t> order_;

@@ -31,10 +31,11 @@ class ManifoldSolver {
                           const ManifoldKernels<Real, Dim>& kernels = manifold_kernels<Real, Dim>().back())
       : team_(team), kernels_(kernels) {}
 
-  /// Takes the bodies, and the contacts with numbers `which`, at the beginning of a step.
-  void begin(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
-    colour(bodies, contacts, which);
+  /// Takes the bodies, and the contacts with numbers `which`, at the beginning of a step; `heads` are those of all.
+  void begin(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const ContactHead> heads,
+             std::span<const std::uint32_t> which) {
     take_bodies(bodies);
+    colour(heads, which);
     team_.for_each(0, heads_.size(), 4, [&](std::size_t from, std::size_t to) {
       for (std::size_t batch = from; batch < to; ++batch) {
         prefetch_contacts(batch + 1, contacts, which);
@@ -125,24 +126,23 @@ class ManifoldSolver {
     return values_.data()->numbers.data() + (batch * At::rows + row_number) * kernels_.lanes + lane;
   }
 
-  void colour(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const std::uint32_t> which) {
+  void colour(std::span<const ContactHead> heads, std::span<const std::uint32_t> which) {
     coloured_.resize(which.size());
-    const auto mover = [&](std::uint32_t i) { return bodies[i].is_fixed() ? ColouredContact::none : i; };
+    const auto mover = [&](std::uint32_t i) { return moves_[i] != 0 ? i : ColouredContact::none; };
     for (std::size_t k = 0; k < which.size(); ++k) {
-      const auto& found = contacts[which[k]];
-      coloured_[k] = {mover(found.a), mover(found.b), static_cast<std::uint8_t>(found.contact.size)};
+      const ContactHead& head = heads[which[k]];
+      coloured_[k] = {mover(head.a), mover(head.b), head.points};
     }
-    colours_.find(coloured_, bodies.size());
     const std::size_t lanes = kernels_.lanes;
-    lanes_.find(colours_, lanes);
+    if (colours_.find(coloured_, moves_.size())) lanes_.find(colours_, lanes);
     const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {}), least_separation_.assign(batches, std::numeric_limits<Real>::infinity());
-    const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
+    const auto spare = static_cast<std::uint32_t>(moves_.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
     values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line) + 1);
   }
   void take_bodies(Bodies bodies) {
-    states_.resize(bodies.size() + 1), inertias_.resize(bodies.size());
+    states_.resize(bodies.size() + 1), inertias_.resize(bodies.size()), moves_.resize(bodies.size());
     angles_.assign(Dim == 2 ? bodies.size() : 0, Real(0));
     states_.back() = {};
     team_.for_each(0, bodies.size(), 64, [&](std::size_t from, std::size_t to) {
@@ -152,6 +152,7 @@ class ManifoldSolver {
         state.set_inverse_mass(bodies[i].inverse_mass);
         if constexpr (Dim == 3) state.set_turn({{1, 0, 0, 0}});
         states_[i] = state;
+        moves_[i] = bodies[i].is_fixed() ? 0 : 1;
         inertias_[i] = lane_numbers(bodies[i].inverse_inertia_now);
       }
     });
@@ -232,6 +233,7 @@ class ManifoldSolver {
   std::vector<Real> least_separation_;  // of the points of each batch when the step began
   bool is_deep_ = false;                // whether one of them is
   std::vector<LaneInertia> inertias_;   // the inverse, of all bodies
+  std::vector<std::uint8_t> moves_;     // whether each of the bodies does
   std::vector<std::uint32_t> a_, b_;    // bodies of each lane
 };
 

@@ -105,13 +105,14 @@ class PointJointSolver {
     coloured_.resize(joints.size());
     const auto mover = [&](std::uint32_t i) { return bodies[i].is_fixed() ? ColouredContact::none : i; };
     for (std::size_t k = 0; k < joints.size(); ++k) coloured_[k] = {mover(joints[k].a), mover(joints[k].b), 1};
-    colours_.find(coloured_, bodies.size());
     const std::size_t lanes = kernels_.lanes;
-    lanes_.find(colours_, lanes);
+    const bool are_others = colours_.find(coloured_, bodies.size());
+    if (are_others) lanes_.find(colours_, lanes);
     const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {});
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
+    if (!are_others) return;
     lane_.resize(joints.size());
     for (std::uint32_t k = 0; k < batches * lanes; ++k)
       if (const std::uint32_t joint = lanes_.members()[k]; joint != LanesOfColours::none) lane_[joint] = k;

@@ -28,6 +28,17 @@ struct PartContact {
   RigidContact<Real, Dim> contact;
 };
 
+/// What is asked of all contacts most often, in few bytes.
+struct ContactHead {
+  std::uint32_t a = 0, b = 0;  // bodies
+  std::uint8_t points = 0;
+  bool has_restitution = false;
+};
+template <class Real, int Dim>
+[[nodiscard]] ContactHead head_of(const PartContact<Real, Dim>& found) {
+  return {found.a, found.b, static_cast<std::uint8_t>(found.contact.size), found.contact.restitution > Real(0)};
+}
+
 template <class Real, int Dim>
 class RigidContacts {
  public:
@@ -39,6 +50,7 @@ class RigidContacts {
   void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
             std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active) {
     set_mesh_contacts_apart(pairs.first_mesh());
+    heads_.resize(contacts_.size());
     blocks_.resize(std::clamp<std::size_t>(pairs.pairs().size() / 256, 1, 1024));
     team.share(blocks_.size(), [&](std::size_t k) {
       begin_block(k, pairs.pairs());
@@ -52,6 +64,8 @@ class RigidContacts {
   /// meshes.
   [[nodiscard]] std::span<PartContact<Real, Dim>> all() { return contacts_; }
   [[nodiscard]] std::span<const PartContact<Real, Dim>> all() const { return contacts_; }
+  /// The same, since the contacts were found.
+  [[nodiscard]] std::span<const ContactHead> heads() const { return heads_; }
   /// Those of parts and walls.
   [[nodiscard]] std::span<const PartContact<Real, Dim>> without_meshes() const { return all().first(without_meshes_); }
   /// The shapes of bodies have changed: no points are carried along, see `follow`.
@@ -82,7 +96,8 @@ class RigidContacts {
     }
   }
   [[nodiscard]] std::size_t memory() const {
-    return (contacts_.capacity() + merged_.capacity()) * sizeof(PartContact<Real, Dim>);
+    return (contacts_.capacity() + merged_.capacity()) * sizeof(PartContact<Real, Dim>) +
+           heads_.capacity() * sizeof(ContactHead);
   }
 
  private:
@@ -151,7 +166,10 @@ class RigidContacts {
       PartContact<Real, Dim>* const before = is_old ? &contacts_[old++] : nullptr;
       const auto [a, b] = bodies_of(pair, world, pairs);
       if (before) before->a = a, before->b = b;
-      if (!is_active(a, b)) continue;
+      if (!is_active(a, b)) {
+        if (before) note_head(*before);
+        continue;
+      }
       const Real margin = margin_of(pair, pairs, step);
       if (!may_be_near(pair, pairs, margin)) {
         if (before) lose(*before);
@@ -161,10 +179,14 @@ class RigidContacts {
           before ? *before
                  : block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
       update(world, pairs, bodies, margin, now);
+      if (before) note_head(now);
       if (now.contact.size > 0) continue;
       before ? void(++block.lost) : block.born.pop_back();
     }
     while (old < block.last) lose(contacts_[old++]);
+  }
+  void note_head(const PartContact<Real, Dim>& of) {
+    heads_[static_cast<std::size_t>(&of - contacts_.data())] = head_of(of);
   }
   [[nodiscard]] static std::pair<std::uint32_t, std::uint32_t> bodies_of(const PartPair& pair,
                                                                          const World<Real, Dim>& world,
@@ -197,7 +219,7 @@ class RigidContacts {
       merged_ = {};
       merged_.reserve(size + size / 16);
     }
-    merged_.resize(size);
+    merged_.resize(size), heads_.resize(size);
     team.share(blocks_.size(), [this](std::size_t k) {
       Block& block = blocks_[k];
       auto next = block.born.begin();
@@ -207,6 +229,7 @@ class RigidContacts {
         if (before.contact.size > 0) *out++ = before;
       }
       std::copy(next, block.born.end(), out);
+      for (std::size_t at = block.place; at < block.place + block.size(); ++at) heads_[at] = head_of(merged_[at]);
       if (block.born.capacity() > 32) block.born = {};  // as where a heap begins
     });
     contacts_.swap(merged_);
@@ -225,6 +248,7 @@ class RigidContacts {
         find_at_mesh(world, pairs, bodies, step, at_mesh_[k], is_active, found_[block]);
     });
     for (const auto& found : found_) contacts_.insert(contacts_.end(), found.begin(), found.end());
+    for (std::size_t k = heads_.size(); k < contacts_.size(); ++k) heads_.push_back(head_of(contacts_[k]));
   }
   template <class IsActive>
   void find_at_mesh(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
@@ -289,6 +313,7 @@ class RigidContacts {
     found.contact.restitution = combined(world.combine_rule.restitution, of_a.restitution, of_b.restitution);
   }
   std::vector<PartContact<Real, Dim>> contacts_, merged_, mesh_before_;
+  std::vector<ContactHead> heads_;  // of the contacts
   std::size_t without_meshes_ = 0;
   bool are_apart_ = false;        // whether those with meshes are known
   std::uint32_t first_mesh_ = 0;  // in pairs, then

@@ -234,16 +234,14 @@ class RigidStepper {
   void gather_blocks() {
     rows_.clear(), active_.clear();
     has_restitution_ = false;
-    const auto all = contacts_.all();
-    for (std::uint32_t k = 0; k < all.size(); ++k) {
-      const auto& found = all[k];
-      if (found.contact.size == 0 || (!moves(found.a) && !moves(found.b)) || !pushes(found)) continue;
-      rows_.blocks.push_back({.a = found.a,
-                              .b = found.b,
-                              .rows = static_cast<std::uint16_t>(found.contact.size * Dim),
-                              .points = static_cast<std::uint16_t>(found.contact.size)});
+    const auto heads = contacts_.heads();
+    for (std::uint32_t k = 0; k < heads.size(); ++k) {
+      const ContactHead& head = heads[k];
+      if (head.points == 0 || (!moves(head.a) && !moves(head.b)) || !pushes(head, k)) continue;
+      rows_.blocks.push_back(
+          {.a = head.a, .b = head.b, .rows = static_cast<std::uint16_t>(head.points * Dim), .points = head.points});
       active_.push_back(k);
-      has_restitution_ |= found.contact.restitution > Real(0);
+      has_restitution_ |= head.has_restitution;
     }
     contact_rows_ = 0;
     find_acting_joints();
@@ -266,27 +264,26 @@ class RigidStepper {
     const bool is_crowded = std::ssize(active_) > most_contacts_of_thick_islands;
     is_swept_.assign(islands_.size(), false);
     for_each_island([&](std::size_t k) {
-      const auto blocks = islands_.blocks(k);
-      const auto joints = std::ranges::lower_bound(blocks, static_cast<std::uint32_t>(active_.size()));
-      const auto contacts = joints - blocks.begin();
-      const bool has_joints = joints != blocks.end();
+      const auto blocks = islands_.blocks(k), joints = joints_of(k);
+      const auto contacts = std::ssize(blocks) - std::ssize(joints);
+      const bool has_joints = !joints.empty();
       const bool is_thin = 4 * blocks.size() <= 5 * islands_.bodies(k).size();
       const bool is_cheap = is_thin || (!is_crowded && blocks.size() <= most_blocks_of_small_islands);
       // That of a heap is too thick anyway: to find that out in each step takes as long as a sweep.
       const bool is_heap = contacts > most_contacts_of_thick_islands &&
                            4 * static_cast<std::size_t>(contacts) > 5 * islands_.bodies(k).size();
       if (is_cheap || (has_joints && !is_heap)) solvers_[k].begin(islands_, k, rows_, bodies_);
-      const auto in_lanes = contacts + std::count_if(joints, blocks.end(),
-                                                     [this](std::uint32_t block) { return may_be_in_lanes(block); });
+      const auto in_lanes =
+          contacts + std::ranges::count_if(joints, [this](std::uint32_t block) { return may_be_in_lanes(block); });
       const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
       if (has_joints ? is_large && (is_heap || !solvers_[k].is_direct()) : !is_cheap) is_swept_[k] = 1;
     });
     swept_.clear();
-    is_in_lanes_.assign(world_.size(), false);
+    is_in_lanes_.assign(world_.size(), 0);
     for (std::size_t k = 0; k < islands_.size(); ++k)
       if (is_swept_[k])
-        for (const std::uint32_t i : islands_.bodies(k)) is_in_lanes_[i] = true;
-    const auto is_in_lanes = [this](std::uint32_t i) { return i < world_.size() && is_in_lanes_[i]; };
+        for (const std::uint32_t i : islands_.bodies(k)) is_in_lanes_[i] = 1;
+    const auto is_in_lanes = [this](std::uint32_t i) { return i < world_.size() && is_in_lanes_[i] != 0; };
     swept_joints_.clear();
     for (std::uint32_t block = 0; block < rows_.blocks.size(); ++block) {
       const bool acts = is_in_lanes(rows_.blocks[block].a) || is_in_lanes(rows_.blocks[block].b);
@@ -306,7 +303,7 @@ class RigidStepper {
     joined_.clear();
     for (const std::uint32_t block : swept_joints_)
       for (const std::uint32_t i : {rows_.blocks[block].a, rows_.blocks[block].b})
-        if (i < world_.size() && is_in_lanes_[i]) joined_.push_back(i);
+        if (i < world_.size() && is_in_lanes_[i] != 0) joined_.push_back(i);
     std::ranges::sort(joined_);
     const auto rest = std::ranges::unique(joined_);
     joined_.erase(rest.begin(), rest.end());
@@ -329,10 +326,10 @@ class RigidStepper {
     contact_rows_ = rows_.rows.size();
     gather_joints();
   }
-  [[nodiscard]] bool pushes(const PartContact<Real, Dim>& found) const {
-    if (found.b >= world_.size()) return !world_.traits(found.a).is_sensor;
-    if (world_.has_traits() && (world_.traits(found.a).is_sensor || world_.traits(found.b).is_sensor)) return false;
-    return !world_.may_push || world_.may_push(world_, found.a, found.b, found.contact.normal);
+  [[nodiscard]] bool pushes(const ContactHead& head, std::uint32_t contact) const {
+    if (head.b >= world_.size()) return !world_.has_traits() || !world_.traits(head.a).is_sensor;
+    if (world_.has_traits() && (world_.traits(head.a).is_sensor || world_.traits(head.b).is_sensor)) return false;
+    return !world_.may_push || world_.may_push(world_, head.a, head.b, contacts_.all()[contact].contact.normal);
   }
   /// Those in lanes have blocks without rows; before it is known whether they are, blocks for so many rows to come.
   void gather_joints(std::size_t rows_in_lanes = 0) {
@@ -384,38 +381,43 @@ class RigidStepper {
     if (block.rows > 0) rows_.blocks.push_back(block);
   }
   void begin_islands() {
-    is_alone_.assign(world_.size(), true);
+    is_alone_.assign(world_.size(), 1);
     for (std::size_t k = 0; k < islands_.size(); ++k)
-      for (const std::uint32_t i : islands_.bodies(k)) is_alone_[i] = false;
+      for (const std::uint32_t i : islands_.bodies(k)) is_alone_[i] = 0;
     hardness_.clear();
     const Real h = substep(), hertz = std::min(options_.hertz, 1 / (8 * h));
     const Softness<Real> soft = softness(hertz, options_.damping, h);
     statistics.hertz = static_cast<double>(hertz);
     hardness_.assign(rows_.blocks.size(), {h, soft.rate, soft.of_impulse / soft.of_mass, options_.fastest_push});
     for (std::size_t k = 0; k < islands_.size(); ++k)
-      for (const std::uint32_t block : islands_.blocks(k))
-        if (block >= active_.size() + acting_joints_.size() || (is_swept_[k] && block < active_.size())) {
+      for (const std::uint32_t block : is_swept_[k] ? joints_of(k) : islands_.blocks(k))
+        if (block >= active_.size() + acting_joints_.size()) {
           continue;
         } else if (block >= active_.size()) {
           joints_[acting_joints_[block - active_.size()].number].is_swept = is_swept_[k] || !solvers_[k].is_direct();
         } else if (solvers_[k].is_direct())
           hardness_[block] = {h, Real(0.2) / h, Real(0), options_.fastest_push};
   }
+  /// The blocks of an island, in increasing order, that are none of contacts.
+  [[nodiscard]] std::span<const std::uint32_t> joints_of(std::size_t island) const {
+    const auto blocks = islands_.blocks(island);
+    return {std::ranges::lower_bound(blocks, static_cast<std::uint32_t>(active_.size())), blocks.end()};
+  }
   void begin_swept() {
     in_lanes_.clear(), easy_.clear();
-    is_easy_.assign(world_.size(), false);
+    is_easy_.assign(world_.size(), 0);
     gather_point_joints();
     if (has_lanes()) begin_lanes();
     apart_from_lanes_.clear(), not_easy_.clear();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
-      if (!is_in_lanes_[i]) apart_from_lanes_.push_back(i);
-      if (!is_easy_[i] && moves(i)) not_easy_.push_back(i);
+      if (is_in_lanes_[i] == 0) apart_from_lanes_.push_back(i);
+      if (is_easy_[i] == 0 && moves(i)) not_easy_.push_back(i);
     }
   }
   void begin_lanes() {
     const Real h = substep();
     const Softness<Real> soft = softness(std::min(options_.hertz, 1 / (8 * h)), options_.damping, h);
-    manifolds_.begin(bodies_, contacts_.all(), swept_);
+    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_);
     points_.begin(bodies_, manifolds_.states(), point_joints_);
     points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, options_.fastest_push);
@@ -425,11 +427,12 @@ class RigidStepper {
     const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
       const RigidBody<Real, Dim>& body = bodies_[i];
-      if (!body.is_fixed() && is_alone_[i]) is_in_lanes_[i] = true;
+      if (!body.is_fixed() && is_alone_[i] != 0) is_in_lanes_[i] = 1;
       const bool is_driven = body.is_fixed() && (body.v != V{} || body.spin != S{});
-      if (is_in_lanes_[i] || is_driven)
-        (is_easy_[i] = is_simple && body.is_ball && !is_driven && !is_damped(i)) ? easy_.push_back(i)
-                                                                                 : in_lanes_.push_back(i);
+      if (is_in_lanes_[i] == 0 && !is_driven) continue;
+      const bool is_easy = is_simple && body.is_ball && !is_driven && !is_damped(i);
+      is_easy_[i] = is_easy ? 1 : 0;
+      is_easy ? easy_.push_back(i) : in_lanes_.push_back(i);
     }
   }
   [[nodiscard]] bool is_damped(std::size_t i) const {
@@ -519,9 +522,7 @@ class RigidStepper {
   [[nodiscard]] bool is_driven(std::uint32_t i) const {
     return bodies_[i].is_fixed() && (bodies_[i].v != V{} || bodies_[i].spin != S{});
   }
-  [[nodiscard]] bool has_joints(std::size_t island) const {
-    return std::ranges::any_of(islands_.blocks(island), [this](std::uint32_t k) { return k >= active_.size(); });
-  }
+  [[nodiscard]] bool has_joints(std::size_t island) const { return !joints_of(island).empty(); }
   /// The energy that rows may have given to the bodies of an island: motors, springs and driven bodies do work.
   [[nodiscard]] Real given_energy(std::size_t island) const {
     Real given(0);
@@ -582,7 +583,7 @@ class RigidStepper {
       if (body.v != V{} || body.spin != S{}) body.update_axes();
       return;
     }
-    if (is_alone_[i]) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
+    if (is_alone_[i] != 0) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
     body.axes = rotation(body.orientation);
   }
   /// Constraints push, and bodies move.
@@ -631,14 +632,14 @@ class RigidStepper {
     } else {
       continuo::move(state, S(state.spin() + lag), h);
     }
-    if (i < is_alone_.size() && is_alone_[i] && !bodies_[i].is_fixed())
+    if (i < is_alone_.size() && is_alone_[i] != 0 && !bodies_[i].is_fixed())
       state.set_moved(state.moved() - acceleration_[i] * (h * h / 2));
   }
   void take_states() {
     if (!has_lanes()) return;
     team_.for_each(0, world_.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i)
-        if (is_in_lanes_[i]) take_state(i);
+        if (is_in_lanes_[i] != 0) take_state(i);
     });
   }
   /// The state of a body in lanes after a substep or a step.
@@ -683,7 +684,7 @@ class RigidStepper {
       const BodyTraits<Real> traits = world_.traits(i);
       body.v *= 1 / (1 + h * traits.damping);
       body.spin *= 1 / (1 + h * traits.spin_damping);
-      is_alone_[i] = is_alone_[i] && traits.damping == Real(0);
+      if (traits.damping != Real(0)) is_alone_[i] = 0;
     }
     for (const std::uint32_t i : in_lanes_)
       manifolds_.state(i).set_v(bodies_[i].v), manifolds_.state(i).set_spin(bodies_[i].spin);
@@ -931,7 +932,7 @@ class RigidStepper {
   void settle() {
     std::vector<std::uint32_t> alone;
     for (std::uint32_t i = 0; i < world_.size(); ++i)
-      if (is_alone_[i] && moves(i)) alone.push_back(i);
+      if (is_alone_[i] != 0 && moves(i)) alone.push_back(i);
     sleep_.settle(world_, islands_, alone, options_.step, options_.sleep_after, options_.sleep_speed);
     for (std::size_t i = 0; i < world_.size(); ++i) bodies_[i].x = world_.position[i];
   }
@@ -988,8 +989,8 @@ class RigidStepper {
   std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;                       // the bodies of these
   std::vector<std::uint8_t> is_swept_;                      // of each island
-  std::vector<bool> is_in_lanes_;                           // bodies of those islands, and bodies without contacts
-  std::vector<bool> is_easy_;                               // those that keep their spin, in gravity alone
+  std::vector<std::uint8_t> is_in_lanes_;                   // bodies of those islands, and bodies without contacts
+  std::vector<std::uint8_t> is_easy_;                       // those that keep their spin, in gravity alone
   std::vector<std::uint32_t> easy_, in_lanes_;              // these, and the others, with driven ones
   std::vector<std::uint32_t> apart_from_lanes_, not_easy_;  // all bodies, and all that move, but those
   std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
@@ -1013,7 +1014,7 @@ class RigidStepper {
   RigidIslands islands_;
   std::vector<IslandSolver<Real, Dim>> solvers_;
   std::vector<ContactHardness<Real>> hardness_;  // of each block
-  std::vector<bool> is_alone_;                   // bodies without contacts and joints
+  std::vector<std::uint8_t> is_alone_;           // bodies without contacts and joints
   std::vector<V> acceleration_;
   std::vector<Real> spin_energy_;                               // of the bodies before a substep
   std::vector<BodyVelocity<Real, Dim>> free_, before_impacts_;  // after its forces have acted; at the end of the last
