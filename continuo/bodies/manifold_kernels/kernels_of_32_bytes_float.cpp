@@ -2,6 +2,7 @@
 // use them.
 #ifdef __AVX2__
 #include <continuo/bodies/manifold_kernels/manifold_kernel.hpp>
+#include <continuo/bodies/manifold_kernels/motion_kernel.hpp>
 #include <continuo/bodies/manifold_kernels/point_joint_kernel.hpp>
 
 namespace continuo {
@@ -9,7 +10,7 @@ namespace continuo {
 template <class Real, int Dim>
 ManifoldKernels<Real, Dim> kernels_of_32_bytes() {
   using L = xsimd::batch<Real, xsimd::avx2>;
-  return {L::size, &solve_manifolds<L, Dim>, &solve_point_joints<L, Dim>};
+  return {L::size, &solve_manifolds<L, Dim>, &solve_point_joints<L, Dim>, &move_bodies<L, Dim>};
 }
 
 template ManifoldKernels<float, 2> kernels_of_32_bytes();

@@ -178,29 +178,65 @@ struct LaneBodies {
   }
 };
 
-/// How far bodies have moved since the step began, and R^T n - n: an arm r that turns with the body has moved along n
-/// by (R r - r) . n = r . (R^T n - n).
+/// The frame of a contact: axis 0 is the normal, the others are across it. What acts along an axis alone has few
+/// numbers there that are not 0.
+template <class L, int Dim>
+struct ContactFrame {
+  using V = Vector<L, Dim>;
+  std::array<V, Dim> axes;
+
+  [[gnu::always_inline]] V local(const V& x) const {
+    V in_frame;
+    for (std::size_t k = 0; k < Dim; ++k) in_frame[k] = dot(axes[k], x);
+    return in_frame;
+  }
+  [[gnu::always_inline]] V world(const V& x) const {
+    V sum = axes[0] * x[0];
+    for (std::size_t k = 1; k < Dim; ++k) sum += axes[k] * x[k];
+    return sum;
+  }
+};
+
+/// The velocity along axis k of an arm that turns at a spin, all in the frame.
+template <std::size_t k, class L>
+[[gnu::always_inline]] inline L speed_of_arm(const Vector<L, 1>& spin, const Vector<L, 2>& arm) {
+  if constexpr (k == 0) {
+    return L(typename L::value_type(0)) - spin[0] * arm[1];
+  } else {
+    return spin[0] * arm[0];
+  }
+}
+template <std::size_t k, class L>
+[[gnu::always_inline]] inline L speed_of_arm(const Vector<L, 3>& spin, const Vector<L, 3>& arm) {
+  constexpr std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  return spin[i] * arm[j] - spin[j] * arm[i];
+}
+
+/// How far bodies have moved since the step began, and in the frame of the contact R^T n - n: an arm r that turns with
+/// the body has moved along n by (R r - r) . n = r . (R^T n - n).
 template <class L, int Dim>
 struct LaneMotion {
   using Real = typename L::value_type;
   Vector<L, Dim> moved, turned_normal;
 
   [[gnu::always_inline]] static LaneMotion load(const SolverState<Real, Dim>* bodies, const std::uint32_t* numbers,
-                                                const Vector<L, Dim>& n) {
+                                                const ContactFrame<L, Dim>& frame) {
     constexpr std::size_t at = Dim == 2 ? 1 : 2;
     const auto place =
         LaneQuads<L>::load([&](std::size_t lane) -> const auto& { return bodies[numbers[lane]].quad[at]; });
+    const L zero(Real(0));
     LaneMotion motion;
     for (std::size_t i = 0; i < Dim; ++i) motion.moved[i] = place[i];
     if constexpr (Dim == 2) {
-      const L sine = place[2], versine = place[3];
-      motion.turned_normal = {{sine * n[1] - versine * n[0], L(Real(0)) - (sine * n[0] + versine * n[1])}};
+      motion.turned_normal = {{zero - place[3], zero - place[2]}};
     } else {
+      // 2 (u x (u x n) - w u x n), where u and w are the vector and the scalar of the turn.
       const auto turn =
           LaneQuads<L>::load([&](std::size_t lane) -> const auto& { return bodies[numbers[lane]].quad[3]; });
-      const Vector<L, 3> u{{turn[0], turn[1], turn[2]}}, across = turning(u, n);
-      const L two(Real(2));
-      motion.turned_normal = (turning(u, across) - across * turn[3]) * two;
+      const Vector<L, 3> u = frame.local({{turn[0], turn[1], turn[2]}});
+      const L w = turn[3], two(Real(2));
+      motion.turned_normal = {
+          {(zero - (u[1] * u[1] + u[2] * u[2])) * two, (u[0] * u[1] - w * u[2]) * two, (u[0] * u[2] + w * u[1]) * two}};
     }
     return motion;
   }
@@ -248,97 +284,196 @@ class BatchOfConstraints {
   LaneBodies<L, Dim> a_, b_;
 };
 
+/// Manifolds, whose arms and moments of inertia are in the frames of the contacts from `prepare` on.
 template <class L, int Dim>
 class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   using Base = BatchOfConstraints<L, Dim, ManifoldLayout<Dim>>;
-  using Base::a_, Base::b_, Base::head_, Base::least, Base::numbers_a_, Base::numbers_b_, Base::push, Base::rows_;
+  using Base::a_, Base::b_, Base::head_, Base::least, Base::numbers_a_, Base::numbers_b_, Base::rows_;
   using Base::store, Base::task_, Base::vector;
   using typename Base::At, typename Base::Real, typename Base::Task, typename Base::V;
+  using S = Spin<L, Dim>;
 
  public:
-  [[gnu::always_inline]] ManifoldBatch(const Task& task, std::size_t batch)
-      : Base(task, batch), normal_(vector(At::normal)) {
+  [[gnu::always_inline]] ManifoldBatch(const Task& task, std::size_t batch) : Base(task, batch) {
+    frame_.axes[0] = vector(At::normal);
     if constexpr (Dim == 2) {
-      across_[0] = {{L(Real(0)) - normal_[1], normal_[0]}};
+      frame_.axes[1] = {{L(Real(0)) - frame_.axes[0][1], frame_.axes[0][0]}};
     } else {
-      across_[0] = vector(At::across);
-      across_[1] = turning(normal_, across_[0]);
+      frame_.axes[1] = vector(At::across);
+      frame_.axes[2] = turning(frame_.axes[0], frame_.axes[1]);
     }
   }
 
   [[gnu::always_inline]] void prepare() {
+    if constexpr (Dim == 3) {
+      turn_inertia(At::inertia_a, a_), turn_inertia(At::inertia_b, b_);
+    }
     for (std::size_t p = 0; p < head_.points; ++p) {
       L* const point = rows_of(p);
-      const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
+      const V arm_a = frame_.local(vector(point + At::arm_a)), arm_b = frame_.local(vector(point + At::arm_b));
+      put(point + At::arm_a, arm_a), put(point + At::arm_b, arm_b);
       const L exists = point[At::mass];
-      point[At::mass] = exists / compliance(normal_, arm_a, arm_b);
-      for (std::size_t k = 0; k < across_.size(); ++k)
-        point[At::mass_across + k] = exists / compliance(across_[k], arm_a, arm_b);
+      point[At::mass] = exists / compliance<0>(arm_a, arm_b);
+      point[At::mass_across] = exists / compliance<1>(arm_a, arm_b);
+      if constexpr (Dim == 3) point[At::mass_across + 1] = exists / compliance<2>(arm_a, arm_b);
     }
   }
   [[gnu::always_inline]] void begin() {
+    V sum;
+    S moment_a, moment_b;
     for (std::size_t p = 0; p < head_.points; ++p) {
       const L* const point = rows_of(p);
-      V impulse = normal_ * point[At::impulse];
-      for (std::size_t k = 0; k < across_.size(); ++k) impulse += across_[k] * point[At::impulse_across + k];
-      push(impulse, vector(point + At::arm_a), vector(point + At::arm_b));
+      V impulse;
+      impulse[0] = point[At::impulse];
+      for (std::size_t k = 1; k < Dim; ++k) impulse[k] = point[At::impulse_across + k - 1];
+      sum += impulse;
+      moment_a += moment(vector(point + At::arm_a), impulse), moment_b += moment(vector(point + At::arm_b), impulse);
     }
+    a_.v -= frame_.world(sum) * a_.inverse_mass, b_.v += frame_.world(sum) * b_.inverse_mass;
+    a_.spin -= world_spin(a_.turned(moment_a)), b_.spin += world_spin(b_.turned(moment_b));
     store();
   }
-  template <ManifoldPass pass>
-  [[gnu::always_inline]] void solve() {
+  /// Those of several batches at once: each waits for its own sums, one after the other.
+  template <ManifoldPass pass, class... Others>
+  [[gnu::always_inline]] void solve(Others&... others) {
+    (take_velocities(), ..., others.take_velocities());
     if constexpr (pass != ManifoldPass::relax_deep)
-      for (std::size_t p = 0; p < head_.points; ++p) resist_sliding(rows_of(p));
-    LaneMotion<L, Dim> of_a, of_b;
-    if constexpr (pass != ManifoldPass::rebound) {
-      of_a = LaneMotion<L, Dim>::load(task_.bodies, numbers_a_, normal_);
-      of_b = LaneMotion<L, Dim>::load(task_.bodies, numbers_b_, normal_);
-    }
-    for (std::size_t p = 0; p < head_.points; ++p) hold_apart<pass>(rows_of(p), of_a, of_b);
-    store();
+      for (std::size_t p = 0; p < At::most_points; ++p) (resist_sliding(p), ..., others.resist_sliding(p));
+    (take_motions<pass>(), ..., others.template take_motions<pass>());
+    for (std::size_t p = 0; p < At::most_points; ++p) (hold_apart<pass>(p), ..., others.template hold_apart<pass>(p));
+    (give_velocities(), ..., others.give_velocities());
   }
 
  private:
+  template <ManifoldPass pass>
+  [[gnu::always_inline]] void take_motions() {
+    moved_apart_ = L(Real(0));
+    if constexpr (pass != ManifoldPass::rebound) {
+      const auto of_a = LaneMotion<L, Dim>::load(task_.bodies, numbers_a_, frame_);
+      const auto of_b = LaneMotion<L, Dim>::load(task_.bodies, numbers_b_, frame_);
+      turned_a_ = of_a.turned_normal, turned_b_ = of_b.turned_normal;
+      moved_apart_ = dot(frame_.axes[0], of_b.moved - of_a.moved);
+      // The core alone turns with its body: a ball that rolls is as far from the floor as before.
+      if (head_.is_round)
+        moved_apart_ += rows_[At::rounding_a] * of_a.turned_normal[0] + rows_[At::rounding_b] * of_b.turned_normal[0];
+    }
+  }
+  [[gnu::always_inline]] void resist_sliding(std::size_t p) {
+    if (p < head_.points) resist_sliding(rows_of(p));
+  }
+  template <ManifoldPass pass>
+  [[gnu::always_inline]] void hold_apart(std::size_t p) {
+    if (p < head_.points) hold_apart<pass>(rows_of(p), moved_apart_, turned_a_, turned_b_);
+  }
   [[gnu::always_inline]] L* rows_of(std::size_t point) const { return rows_ + At::points + point * At::of_point; }
-  /// The change of velocity along a direction by an impulse of 1.
-  [[gnu::always_inline]] L compliance(const V& direction, const V& arm_a, const V& arm_b) const {
-    const Spin<L, Dim> of_a = moment(arm_a, direction), of_b = moment(arm_b, direction);
-    const L sum = (a_.inverse_mass + b_.inverse_mass) + (dot(of_a, a_.turned(of_a)) + dot(of_b, b_.turned(of_b)));
-    return xsimd::max(sum, L(least));  // lanes without a contact
+  [[gnu::always_inline]] static void put(L* row, const V& x) {
+    for (std::size_t i = 0; i < Dim; ++i) row[i] = x[i];
+  }
+  /// The inverse moment of inertia in the frame, R^T I R, where the columns of R are its axes.
+  [[gnu::always_inline]] void turn_inertia(std::size_t row, LaneBodies<L, Dim>& body) const {
+    std::array<V, 3> half;  // I R
+    for (std::size_t k = 0; k < 3; ++k) half[k] = body.turned(frame_.axes[k]);
+    const auto entry = [&](std::size_t i, std::size_t j) { return dot(frame_.axes[i], half[j]); };
+    body.inertia = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)};
+    for (std::size_t i = 0; i < body.inertia.size(); ++i) rows_[row + i] = body.inertia[i];
+  }
+  [[gnu::always_inline]] S world_spin(const S& spin) const {
+    if constexpr (Dim == 2) {
+      return spin;
+    } else {
+      return frame_.world(spin);
+    }
+  }
+  /// Velocities in the frame: that of b against a, and both spins.
+  [[gnu::always_inline]] void take_velocities() {
+    mass_ = a_.inverse_mass + b_.inverse_mass;
+    velocity_ = frame_.local(b_.v - a_.v);
+    if constexpr (Dim == 2) {
+      spin_a_ = a_.spin, spin_b_ = b_.spin;
+    } else {
+      spin_a_ = first_spin_a_ = frame_.local(a_.spin), spin_b_ = first_spin_b_ = frame_.local(b_.spin);
+    }
+    for (std::size_t k = 0; k < Dim; ++k) impulse_[k] = L(Real(0));
+  }
+  /// What has changed of them: what no impulse acts on stays the same to the last bit.
+  [[gnu::always_inline]] void give_velocities() {
+    const V impulse = frame_.world(impulse_);
+    a_.v -= impulse * a_.inverse_mass, b_.v += impulse * b_.inverse_mass;
+    if constexpr (Dim == 2) {
+      a_.spin = spin_a_, b_.spin = spin_b_;
+    } else {
+      a_.spin += world_spin(spin_a_ - first_spin_a_), b_.spin += world_spin(spin_b_ - first_spin_b_);
+    }
+    store();
+  }
+  /// The change of spin by an impulse along axis k at the end of an arm.
+  template <std::size_t k>
+  [[gnu::always_inline]] static S change_of_spin(const LaneBodies<L, Dim>& body, const V& arm, const L& impulse) {
+    if constexpr (Dim == 2) {
+      const L turned = body.inertia[0] * impulse;
+      return {{k == 0 ? L(Real(0)) - turned * arm[1] : turned * arm[0]}};
+    } else {
+      constexpr std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+      S moment;
+      moment[i] = arm[j] * impulse, moment[j] = L(Real(0)) - arm[i] * impulse;
+      const auto& of = body.inertia;
+      const auto entry = [&](std::size_t row, std::size_t column) -> const L& {
+        return row == column ? of[row] : of[(row + column) == 1 ? 3 : (row + column) == 3 ? 4 : 5];
+      };
+      S change;
+      for (std::size_t row = 0; row < 3; ++row) change[row] = entry(row, i) * moment[i] + entry(row, j) * moment[j];
+      return change;
+    }
+  }
+  /// The change of velocity along axis k by an impulse of 1.
+  template <std::size_t k>
+  [[gnu::always_inline]] L compliance(const V& arm_a, const V& arm_b) const {
+    const L one(Real(1));
+    const L of_a = speed_of_arm<k>(change_of_spin<k>(a_, arm_a, one), arm_a);
+    const L of_b = speed_of_arm<k>(change_of_spin<k>(b_, arm_b, one), arm_b);
+    return xsimd::max((a_.inverse_mass + b_.inverse_mass) + (of_a + of_b),
+                      L(least));  // lanes without a contact
+  }
+  /// The velocity of b against a at a point, along axis k.
+  template <std::size_t k>
+  [[gnu::always_inline]] L speed(const V& arm_a, const V& arm_b) const {
+    return velocity_[k] + (speed_of_arm<k>(spin_b_, arm_b) - speed_of_arm<k>(spin_a_, arm_a));
+  }
+  template <std::size_t k>
+  [[gnu::always_inline]] void push(const L& impulse, const V& arm_a, const V& arm_b) {
+    velocity_[k] += impulse * mass_;
+    impulse_[k] += impulse;
+    spin_a_ -= change_of_spin<k>(a_, arm_a, impulse);
+    spin_b_ += change_of_spin<k>(b_, arm_b, impulse);
   }
   [[gnu::always_inline]] void resist_sliding(L* point) {
     const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
-    const V slip = b_.velocity_at(arm_b) - a_.velocity_at(arm_a);
     const L most = rows_[At::friction] * point[At::impulse];
     std::array<L, Dim - 1> wanted;
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      wanted[k] = point[At::impulse_across + k] - point[At::mass_across + k] * dot(across_[k], slip);
+    wanted[0] = point[At::impulse_across] - point[At::mass_across] * speed<1>(arm_a, arm_b);
     if constexpr (Dim == 2) {
       wanted[0] = xsimd::max(xsimd::min(wanted[0], most), L(Real(0)) - most);
     } else {
+      wanted[1] = point[At::impulse_across + 1] - point[At::mass_across + 1] * speed<2>(arm_a, arm_b);
       const L square = wanted[0] * wanted[0] + wanted[1] * wanted[1], most2 = most * most;
       // At most 1: what is within the circle stays as it is.
       const L factor =
           xsimd::select(square > most2, xsimd::sqrt(most2 / xsimd::max(square, most2 + L(least))), L(Real(1)));
       wanted[0] *= factor, wanted[1] *= factor;
+      push<2>(wanted[1] - point[At::impulse_across + 1], arm_a, arm_b);
+      point[At::impulse_across + 1] = wanted[1];
     }
-    V impulse = across_[0] * (wanted[0] - point[At::impulse_across]);
-    for (std::size_t k = 1; k < wanted.size(); ++k) impulse += across_[k] * (wanted[k] - point[At::impulse_across + k]);
-    for (std::size_t k = 0; k < wanted.size(); ++k) point[At::impulse_across + k] = wanted[k];
-    push(impulse, arm_a, arm_b);
+    push<1>(wanted[0] - point[At::impulse_across], arm_a, arm_b);
+    point[At::impulse_across] = wanted[0];
   }
+  /// `moved_apart` is by how much the bodies have moved apart without what their arms have.
   template <ManifoldPass pass>
-  [[gnu::always_inline]] void hold_apart(L* point, const LaneMotion<L, Dim>& of_a, const LaneMotion<L, Dim>& of_b) {
+  [[gnu::always_inline]] void hold_apart(L* point, const L& moved_apart, const V& turned_a, const V& turned_b) {
     const L zero(Real(0)), one(Real(1));
     const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
     L bias = point[At::separation], of_mass = one, of_impulse = zero;
     if constexpr (pass != ManifoldPass::rebound) {
-      L apart = point[At::separation] + dot(normal_, of_b.moved - of_a.moved) +
-                (dot(arm_b, of_b.turned_normal) - dot(arm_a, of_a.turned_normal));
-      // The core alone turns with its body: a ball that rolls is as far from the floor as before.
-      if (head_.is_round)
-        apart += rows_[At::rounding_a] * dot(normal_, of_a.turned_normal) +
-                 rows_[At::rounding_b] * dot(normal_, of_b.turned_normal);
+      const L apart = (point[At::separation] + moved_apart) + (dot(arm_b, turned_b) - dot(arm_a, turned_a));
       const auto is_apart = apart > zero;  // then it may close within the substep
       const L closing = apart * L(1 / task_.h);
       if constexpr (pass == ManifoldPass::push) {
@@ -351,41 +486,64 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       if constexpr (pass == ManifoldPass::relax_deep)
         of_mass = xsimd::select(point[At::separation] < L(-task_.deep), one, zero);
     }
-    const L speed = dot(normal_, b_.velocity_at(arm_b) - a_.velocity_at(arm_a));
     const L so_far = point[At::impulse];
-    const L now = xsimd::max(so_far - point[At::mass] * of_mass * (speed + bias) - of_impulse * so_far, zero);
+    const L wanted = so_far - point[At::mass] * of_mass * (speed<0>(arm_a, arm_b) + bias) - of_impulse * so_far;
+    const L now = xsimd::max(wanted, zero);
     point[At::impulse] = now;
     point[At::greatest_impulse] = xsimd::max(point[At::greatest_impulse], now);
-    push(normal_ * (now - so_far), arm_a, arm_b);
+    push<0>(now - so_far, arm_a, arm_b);
   }
-  V normal_;
-  std::array<V, Dim - 1> across_;
+  ContactFrame<L, Dim> frame_;
+  L mass_;  // the sum of the inverse ones
+  V velocity_, impulse_, turned_a_, turned_b_;
+  L moved_apart_;
+  S spin_a_, spin_b_, first_spin_a_, first_spin_b_;
 };
+
+/// Applies one pass to batches from ... to - 1. Each is a function of its own, so that the compiler keeps what it needs
+/// in registers.
+template <class L, int Dim, ManifoldPass pass>
+[[gnu::flatten, gnu::noinline]] void apply_pass(const ManifoldTask<typename L::value_type, Dim>& task, std::size_t from,
+                                                std::size_t to) {
+  const ManifoldTask<typename L::value_type, Dim> here = task;  // a copy, which no store to a body can change
+  using Batch = ManifoldBatch<L, Dim>;
+  if constexpr (pass == ManifoldPass::prepare) {
+    for (std::size_t batch = from; batch < to; ++batch) Batch(here, batch).prepare();
+  } else if constexpr (pass == ManifoldPass::begin) {
+    for (std::size_t batch = from; batch < to; ++batch) Batch(here, batch).begin();
+  } else if constexpr (pass == ManifoldPass::push || pass == ManifoldPass::relax) {
+    std::size_t batch = from;
+    for (; batch + 1 < to; batch += 2) {
+      Batch one(here, batch), other(here, batch + 1);
+      one.template solve<pass>(other);
+    }
+    if (batch < to) Batch(here, batch).template solve<pass>();
+  } else {
+    const auto acts = [](const BatchHead& head) {
+      return pass == ManifoldPass::rebound ? head.is_meant : head.is_deep;
+    };
+    for (std::size_t batch = from; batch < to; ++batch)
+      if (acts(here.heads[batch])) Batch(here, batch).template solve<pass>();
+  }
+}
 
 /// The kernel for lanes L.
 template <class L, int Dim>
-[[gnu::flatten]] void solve_manifolds(const ManifoldTask<typename L::value_type, Dim>& task, ManifoldPass pass,
-                                      std::size_t from, std::size_t to) {
-  const ManifoldTask<typename L::value_type, Dim> here = task;  // a copy, which no store to a body can change
-  const auto for_each = [&](const auto& act) {
-    for (std::size_t batch = from; batch < to; ++batch) act(ManifoldBatch<L, Dim>(here, batch));
-  };
+void solve_manifolds(const ManifoldTask<typename L::value_type, Dim>& task, ManifoldPass pass, std::size_t from,
+                     std::size_t to) {
   switch (pass) {
     case ManifoldPass::prepare:
-      return for_each([](auto batch) { batch.prepare(); });
+      return apply_pass<L, Dim, ManifoldPass::prepare>(task, from, to);
     case ManifoldPass::begin:
-      return for_each([](auto batch) { batch.begin(); });
+      return apply_pass<L, Dim, ManifoldPass::begin>(task, from, to);
     case ManifoldPass::push:
-      return for_each([](auto batch) { batch.template solve<ManifoldPass::push>(); });
+      return apply_pass<L, Dim, ManifoldPass::push>(task, from, to);
     case ManifoldPass::relax:
-      return for_each([](auto batch) { batch.template solve<ManifoldPass::relax>(); });
+      return apply_pass<L, Dim, ManifoldPass::relax>(task, from, to);
     case ManifoldPass::relax_deep:
-      for (std::size_t batch = from; batch < to; ++batch)
-        if (here.heads[batch].is_deep) ManifoldBatch<L, Dim>(here, batch).template solve<ManifoldPass::relax_deep>();
-      return;
+      return apply_pass<L, Dim, ManifoldPass::relax_deep>(task, from, to);
     case ManifoldPass::rebound:
-      for (std::size_t batch = from; batch < to; ++batch)
-        if (here.heads[batch].is_meant) ManifoldBatch<L, Dim>(here, batch).template solve<ManifoldPass::rebound>();
+      return apply_pass<L, Dim, ManifoldPass::rebound>(task, from, to);
   }
 }
 

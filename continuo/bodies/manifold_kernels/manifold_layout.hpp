@@ -22,7 +22,7 @@ struct ManifoldLayout {
   static constexpr std::size_t rounding_a = inertia_b + of_inertia;  // read where one of them is not 0
   static constexpr std::size_t rounding_b = rounding_a + 1;
   static constexpr std::size_t points = rounding_b + 1;
-  // Of a point:
+  // Of a point, whose arms are in the frame of the contact once the batch is prepared:
   static constexpr std::size_t arm_a = 0;
   static constexpr std::size_t arm_b = Dim;
   static constexpr std::size_t separation = 2 * Dim;  // when the step began
@@ -73,12 +73,25 @@ template <class Real, int Dim>
 using ManifoldKernel = void (*)(const ManifoldTask<Real, Dim>& task, ManifoldPass pass, std::size_t from,
                                 std::size_t to);
 
+/// Bodies that move at their velocities and spins.
+template <class Real, int Dim>
+struct MotionTask {
+  SolverState<Real, Dim>* bodies = nullptr;
+  Real* angles = nullptr;                  // in the plane: since the step began
+  const std::uint32_t* numbers = nullptr;  // the bodies of each lane of each batch: none twice, unless it never moves
+  Real h{};
+};
+/// Moves the bodies of batches from ... to - 1.
+template <class Real, int Dim>
+using MotionKernel = void (*)(const MotionTask<Real, Dim>& task, std::size_t from, std::size_t to);
+
 /// Kernels, and for how many lanes they are.
 template <class Real, int Dim>
 struct ManifoldKernels {
   std::size_t lanes = 0;
   ManifoldKernel<Real, Dim> apply = nullptr;
   ManifoldKernel<Real, Dim> apply_to_point_joints = nullptr;  // see point_joint_layout.hpp
+  MotionKernel<Real, Dim> move = nullptr;
 };
 
 /// Those that this machine can run, the widest last. What they compute is the same to the last bit for all.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <continuo/bodies/support/large_array.hpp>
 #include <continuo/numerics/vector.hpp>
@@ -59,20 +60,30 @@ template <class Real>
 }
 
 /// sin(x) / x and (1 - cos(x)) / x^2, as functions of the square of x.
-template <class Real>
+template <class T>
 struct SineQuotients {
-  Real sine, versine;
+  T sine, versine;
 };
+/// Up to which square their series are precise to rounding.
+inline constexpr double most_square_of_series = 0.1;
+/// The series, for numbers T that are Real or lanes of it.
+template <class Real, class T>
+[[nodiscard]] constexpr SineQuotients<T> series_of_sine(const T& square) {
+  // What is left out is 0.1^4 / 9! or 0.1^7 / 15!, a hundredth of the rounding.
+  constexpr int terms = std::numeric_limits<Real>::digits <= 24 ? 3 : 6;
+  const T one(Real(1));
+  T sine = one, versine = one;
+  for (int k = terms; k > 0; --k) {
+    sine = one - square * T(Real(1) / static_cast<Real>(2 * k * (2 * k + 1))) * sine;
+    versine = one - square * T(Real(1) / static_cast<Real>((2 * k + 1) * (2 * k + 2))) * versine;
+  }
+  return {sine, versine * T(Real(0.5))};
+}
 template <class Real>
 [[nodiscard]] SineQuotients<Real> sine_quotients(const Real& square) {
-  if (square > Real(0.1)) {
-    const Real x = std::sqrt(square);
-    return {std::sin(x) / x, (1 - std::cos(x)) / square};
-  }
-  // The series; what is left out is below the rounding of a double.
-  const Real s = square;
-  return {1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))),
-          (1 - s / 12 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132 * (1 - s / 182)))))) / 2};
+  if (!(square > Real(most_square_of_series))) return series_of_sine<Real>(square);
+  const Real x = std::sqrt(square);
+  return {std::sin(x) / x, (1 - std::cos(x)) / square};
 }
 
 /// Moves a body for h at its velocity and a spin.

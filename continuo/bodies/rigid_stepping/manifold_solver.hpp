@@ -61,11 +61,26 @@ class ManifoldSolver {
   }
   /// Whether there are any.
   [[nodiscard]] bool is_deep() const { return is_deep_; }
+  /// A kernel may take several batches at once, but not of the shared colour.
   void sweep(ManifoldPass pass) {
-    for (std::size_t c = 0; c < ContactColours::most; ++c)
-      team_.for_each(lanes_.first(c), lanes_.first(c + 1),
-                     ContactColours::is_shared(c) ? lanes_.first(c + 1) - lanes_.first(c) : 4,
+    constexpr std::size_t shared = ContactColours::most - 1;
+    for (std::size_t c = 0; c < shared; ++c)
+      team_.for_each(lanes_.first(c), lanes_.first(c + 1), 4,
                      [&](std::size_t from, std::size_t to) { kernels_.apply(task_, pass, from, to); });
+    for (std::size_t batch = lanes_.first(shared); batch < lanes_.first(shared + 1); ++batch)
+      kernels_.apply(task_, pass, batch, batch + 1);
+  }
+  /// Takes bodies that move with their spins and velocities, in `move`.
+  void set_movers(std::span<const std::uint32_t> bodies) {
+    movers_.assign(bodies.begin(), bodies.end());
+    const auto spare = static_cast<std::uint32_t>(moves_.size());  // fills the last batch
+    movers_.resize((bodies.size() + kernels_.lanes - 1) / kernels_.lanes * kernels_.lanes, spare);
+  }
+  /// Moves these bodies for h.
+  void move(const Real& h) {
+    const MotionTask<Real, Dim> task{states_.data(), angles_.data(), movers_.data(), h};
+    team_.for_each(0, movers_.size() / kernels_.lanes, std::max<std::size_t>(256 / kernels_.lanes, 1),
+                   [&](std::size_t from, std::size_t to) { kernels_.move(task, from, to); });
   }
   [[nodiscard]] SolverState<Real, Dim>& state(std::size_t body) { return states_[body]; }
   [[nodiscard]] SolverState<Real, Dim>* states() { return states_.data(); }
@@ -143,7 +158,7 @@ class ManifoldSolver {
   }
   void take_bodies(Bodies bodies) {
     states_.resize(bodies.size() + 1), inertias_.resize(bodies.size()), moves_.resize(bodies.size());
-    angles_.assign(Dim == 2 ? bodies.size() : 0, Real(0));
+    angles_.assign(Dim == 2 ? bodies.size() + 1 : 0, Real(0));
     states_.back() = {};
     team_.for_each(0, bodies.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
@@ -234,6 +249,7 @@ class ManifoldSolver {
   bool is_deep_ = false;                // whether one of them is
   std::vector<LaneInertia> inertias_;   // the inverse, of all bodies
   std::vector<std::uint8_t> moves_;     // whether each of the bodies does
+  std::vector<std::uint32_t> movers_;   // see set_movers; whole batches
   std::vector<std::uint32_t> a_, b_;    // bodies of each lane
 };
 

@@ -404,7 +404,7 @@ class RigidStepper {
     return {std::ranges::lower_bound(blocks, static_cast<std::uint32_t>(active_.size())), blocks.end()};
   }
   void begin_swept() {
-    in_lanes_.clear(), easy_.clear();
+    in_lanes_.clear(), easy_.clear(), easy_alone_.clear();
     is_easy_.assign(world_.size(), 0);
     gather_point_joints();
     if (has_lanes()) begin_lanes();
@@ -433,7 +433,9 @@ class RigidStepper {
       const bool is_easy = is_simple && body.is_ball && !is_driven && !is_damped(i);
       is_easy_[i] = is_easy ? 1 : 0;
       is_easy ? easy_.push_back(i) : in_lanes_.push_back(i);
+      if (is_easy && is_alone_[i] != 0) easy_alone_.push_back(i);
     }
+    manifolds_.set_movers(easy_);
   }
   [[nodiscard]] bool is_damped(std::size_t i) const {
     if (!world_.has_traits()) return false;
@@ -600,9 +602,8 @@ class RigidStepper {
     team_.for_each(0, in_lanes_.size(), 128, [&](std::size_t from, std::size_t to) {
       for (const std::uint32_t i : std::span(in_lanes_).subspan(from, to - from)) move_state(i, bodies_[i].lag, h);
     });
-    team_.for_each(0, easy_.size(), 128, [&](std::size_t from, std::size_t to) {
-      for (const std::uint32_t i : std::span(easy_).subspan(from, to - from)) move_state(i, S{}, h);
-    });
+    manifolds_.move(h);
+    for (const std::uint32_t i : easy_alone_) follow_parabola(i, h);
   }
   void relax_swept(ManifoldPass pass) {
     sweep_joints(RowPass::relax);
@@ -632,8 +633,11 @@ class RigidStepper {
     } else {
       continuo::move(state, S(state.spin() + lag), h);
     }
-    if (i < is_alone_.size() && is_alone_[i] != 0 && !bodies_[i].is_fixed())
-      state.set_moved(state.moved() - acceleration_[i] * (h * h / 2));
+    if (i < is_alone_.size() && is_alone_[i] != 0 && !bodies_[i].is_fixed()) follow_parabola(i, h);
+  }
+  /// What is alone has moved at its velocity at the end of h; its parabola is known.
+  void follow_parabola(std::uint32_t i, const Real& h) {
+    manifolds_.state(i).set_moved(manifolds_.state(i).moved() - acceleration_[i] * (h * h / 2));
   }
   void take_states() {
     if (!has_lanes()) return;
@@ -992,6 +996,7 @@ class RigidStepper {
   std::vector<std::uint8_t> is_in_lanes_;                   // bodies of those islands, and bodies without contacts
   std::vector<std::uint8_t> is_easy_;                       // those that keep their spin, in gravity alone
   std::vector<std::uint32_t> easy_, in_lanes_;              // these, and the others, with driven ones
+  std::vector<std::uint32_t> easy_alone_;                   // those of the easy ones without contacts and joints
   std::vector<std::uint32_t> apart_from_lanes_, not_easy_;  // all bodies, and all that move, but those
   std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
   std::vector<RigidBody<Real, Dim>> bodies_;
