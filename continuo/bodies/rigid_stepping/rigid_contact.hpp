@@ -56,16 +56,23 @@ struct RigidContact {
   [[nodiscard]] auto all() const { return std::span(points).first(size); }
 };
 
-/// A contact of bodies a and b with a manifold whose points are in the frame `of_a`, and with the impulses of those
-/// points of the contact before, if there was one, that have the same features.
+/// Gives a contact of bodies a and b a manifold whose points are in the frame `of_a`. Points with the features of
+/// points of before keep their impulses.
 template <class Real, int Dim>
-[[nodiscard]] RigidContact<Real, Dim> contact_of(const Manifold<Real, Dim>& manifold, const Pose<Real, Dim>& of_a,
-                                                 const Real& margin, const RigidBody<Real, Dim>& a,
-                                                 const RigidBody<Real, Dim>& b, const RigidContact<Real, Dim>* before) {
-  RigidContact<Real, Dim> contact;
+void renew(RigidContact<Real, Dim>& contact, const Manifold<Real, Dim>& manifold, const Pose<Real, Dim>& of_a,
+           const Real& margin, const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+  struct Kept {
+    std::uint32_t feature = 0;
+    Real impulse{};
+    Vector<Real, Dim> friction{};
+  };
+  std::array<Kept, RigidContact<Real, Dim>::most_points> kept;
+  const std::size_t points_before = contact.size;
+  for (std::size_t k = 0; k < points_before; ++k)
+    kept[k] = {contact.points[k].feature, contact.points[k].impulse, contact.points[k].friction};
   contact.size = manifold.size;
   contact.margin = margin;
-  if (manifold.size == 0) return contact;
+  if (manifold.size == 0) return;
   contact.normal = of_a.axes * manifold.normal;
   contact.normal_in_a = a.pose().local_direction(contact.normal);
   contact.found_at = relative(a.pose(), b.pose());
@@ -73,15 +80,15 @@ template <class Real, int Dim>
     const ManifoldPoint<Real, Dim>& found = manifold.points[i];
     RigidContactPoint<Real, Dim>& point = contact.points[i];
     point.feature = found.feature;
-    for (const auto& old : before ? before->all() : std::span<const RigidContactPoint<Real, Dim>>())
-      if (old.feature == found.feature) point.impulse = old.impulse, point.friction = old.friction;
+    point.impulse = point.greatest_impulse = Real(0), point.friction = {};
+    for (std::size_t k = 0; k < points_before; ++k)
+      if (kept[k].feature == found.feature) point.impulse = kept[k].impulse, point.friction = kept[k].friction;
     const Vector<Real, Dim> x = of_a.place(found.position);
     point.arm_a = x - a.x, point.arm_b = x - b.x;
     point.local_a = a.pose().local(x), point.local_b = b.pose().local(x);
     point.separation = point.separation_when_found = found.separation;
     point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
   }
-  return contact;
 }
 
 /// Takes a contact along with two bodies that have hardly moved against each other since its points were found: the

@@ -270,8 +270,9 @@ class RigidContacts {
       for (const PartContact<Real, Dim>& one : before)
         if (const Real cosine = dot(one.contact.normal, normal); cosine > greatest)
           greatest = cosine, old = &one.contact;
-      PartContact<Real, Dim>& made = found.emplace_back(PartContact<Real, Dim>{pair, a, ground, {}});
-      made.contact = contact_of(touching, pose, margin, bodies[a], bodies[ground], old);
+      PartContact<Real, Dim>& made =
+          found.emplace_back(PartContact<Real, Dim>{pair, a, ground, old ? *old : RigidContact<Real, Dim>{}});
+      renew(made.contact, touching, pose, margin, bodies[a], bodies[ground]);
       made.contact.rounding_a = part.rounding;
       made.contact.friction = both.friction, made.contact.restitution = both.restitution;
     });
@@ -290,7 +291,7 @@ class RigidContacts {
       const Plane<Real, Dim> plane{pose.local_direction(turned.normal),
                                    turned.offset - dot(turned.normal, pose.centre)};
       const Manifold<Real, Dim> touching = manifold(*part_a.convex, plane, margin);
-      found.contact = contact_of(touching, pose, margin, bodies[a], bodies[b], &found.contact);
+      renew(found.contact, touching, pose, margin, bodies[a], bodies[b]);
     } else {
       const RigidPart<Real, Dim>& part_b = parts[found.parts.b];
       const PlacedPart<Real, Dim>& placed_b = pairs.placed(found.parts.b);
@@ -302,7 +303,7 @@ class RigidContacts {
             part_a.is_box() && part_b.is_box()
                 ? manifold_of_boxes(*part_a.convex, *part_b.convex, {part_a.half, part_b.half, b_in_a, size}, margin)
                 : manifold(*part_a.convex, *part_b.convex, b_in_a, margin);
-        found.contact = contact_of(touching, pose, margin, bodies[a], bodies[b], &found.contact);
+        renew(found.contact, touching, pose, margin, bodies[a], bodies[b]);
       }
     }
     if (found.contact.size == 0) return;
