@@ -90,8 +90,11 @@ class RigidPairs {
     first_mesh_ = static_cast<std::uint32_t>(parts_.size() + world.walls().size());
     is_new_ = true;
   }
-  /// The next update looks for all pairs.
-  void find_all() { is_new_ = true; }
+  /// The next update looks for all pairs; those bodies that may collide with no other are not looked up.
+  void find_all(std::vector<std::uint8_t> has_partners) {
+    has_partners_ = std::move(has_partners);
+    is_new_ = true;
+  }
   /// Whether the meshes of the world are still these.
   [[nodiscard]] bool has_meshes_of(const World<Real, Dim>& world) const {
     return std::ranges::equal(meshes_, world.meshes(), {}, {}, &WorldMesh<Real, Dim>::geometry);
@@ -183,10 +186,13 @@ class RigidPairs {
     const auto may_touch = [&](std::uint32_t i, std::uint32_t j) {
       return parts_[i].body != parts_[j].body && collide(parts_[i].body, parts_[j].body);
     };
+    const bool may_meet = std::ranges::any_of(moved_, [&](std::uint32_t i) { return may_have_pairs(i); });
     // A search for all pairs has each once, one for those of the parts that have moved some of them twice.
-    const bool are_all = moved_.size() * 3 > parts_.size();
+    const bool are_all = may_meet && moved_.size() * 3 > parts_.size();
     if (are_all) pairs_.clear();
-    if (!sweep(team, are_all, may_touch)) {
+    if (!may_meet) {
+      found_.assign(1, {});
+    } else if (!sweep(team, are_all, may_touch)) {
       update_tree();
       are_all ? find_all_pairs(team, may_touch) : find_pairs_of_moved(team, may_touch);
     }
@@ -205,6 +211,9 @@ class RigidPairs {
   }
 
  private:
+  [[nodiscard]] bool may_have_pairs(std::uint32_t part) const {
+    return has_partners_.empty() || has_partners_[parts_[part].body] != 0;
+  }
   /// Finds the pairs of all parts, or of those that have moved, in their order along an axis. False where that is
   /// slower than to look them up in the tree: there are few, or too many beside each other along the axis.
   template <class MayTouch>
@@ -259,27 +268,22 @@ class RigidPairs {
     });
     found_.back().clear();
   }
-  /// By counting those of each part: the few of one part are sorted alone.
+  /// By counting: first by the second numbers, then, where equal ones keep their order, by the first.
   void sort_new_pairs() {
-    first_pair_.assign(parts_.size() + 1, 0);
-    for (const auto& found : found_)
-      for (const PartPair& pair : found) ++first_pair_[pair.a + 1];
-    std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
-    new_pairs_.resize(first_pair_.back());
-    for (const auto& found : found_)
-      for (const PartPair& pair : found) new_pairs_[first_pair_[pair.a]++] = pair;
-    for (std::size_t i = 0, first = 0; i < parts_.size(); first = first_pair_[i++])
-      sort_few(std::span(new_pairs_).subspan(first, first_pair_[i] - first));
+    unsorted_.clear();
+    for (const auto& found : found_) unsorted_.insert(unsorted_.end(), found.begin(), found.end());
+    new_pairs_.resize(unsorted_.size());
+    distribute(unsorted_, &PartPair::b, first_mesh_ + meshes_.size(), new_pairs_);
+    unsorted_.swap(new_pairs_);
+    distribute(unsorted_, &PartPair::a, parts_.size(), new_pairs_);
   }
-  /// The few pairs of one part, by insertion, which is faster there.
-  static void sort_few(std::span<PartPair> pairs) {
-    if (pairs.size() > 32) return static_cast<void>(std::ranges::sort(pairs));
-    for (std::size_t k = 1; k < pairs.size(); ++k) {
-      const PartPair pair = pairs[k];
-      std::size_t at = k;
-      for (; at > 0 && pairs[at - 1].b > pair.b; --at) pairs[at] = pairs[at - 1];
-      pairs[at] = pair;
-    }
+  /// Puts pairs into the order of one of their numbers, which are below `numbers`. Those of the same keep theirs.
+  void distribute(std::span<const PartPair> pairs, std::uint32_t PartPair::* number, std::size_t numbers,
+                  std::span<PartPair> sorted) {
+    first_pair_.assign(numbers + 1, 0);
+    for (const PartPair& pair : pairs) ++first_pair_[pair.*number + 1];
+    std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
+    for (const PartPair& pair : pairs) sorted[first_pair_[pair.*number]++] = pair;
   }
   /// Puts the new pairs among those of before of which no part has moved.
   void take_new_pairs() {
@@ -385,10 +389,11 @@ class RigidPairs {
   std::vector<Bounds<Real, Dim>> rooms_;
   std::vector<PlacedPart<Real, Dim>> placed_;
   std::vector<std::uint32_t> moved_;
-  std::vector<std::uint8_t> has_moved_;  // each part
-  std::vector<PartPair> pairs_, new_pairs_, merged_;
+  std::vector<std::uint8_t> has_moved_;     // each part
+  std::vector<std::uint8_t> has_partners_;  // each body
+  std::vector<PartPair> pairs_, new_pairs_, unsorted_, merged_;
   std::vector<std::vector<PartPair>> found_;  // the new ones, of each part of a search, and those with walls and meshes
-  std::vector<std::size_t> first_pair_;       // of each part, while they are sorted
+  std::vector<std::size_t> first_pair_;       // of each number, while they are sorted
   std::vector<std::uint32_t> still_, still_before_;
   std::vector<Bounds<Real, Dim>> still_rooms_;
   SortedBounds<Real, Dim> sorted_;

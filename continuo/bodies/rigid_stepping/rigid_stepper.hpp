@@ -17,6 +17,7 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/manifold_kernels/chosen_kernels.hpp>
+#include <continuo/bodies/rigid_stepping/collision_partners.hpp>
 #include <continuo/bodies/rigid_stepping/continuous_collision.hpp>
 #include <continuo/bodies/rigid_stepping/energy_bounds.hpp>
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
@@ -187,8 +188,11 @@ class RigidStepper {
     if (world_.has_traits()) now.masks.reserve(world_.size());
     for (std::size_t i = 0; world_.has_traits() && i < world_.size(); ++i)
       now.masks.push_back({world_.traits(i).category, world_.traits(i).mask});
+    if (world_.has_ignored_groups()) now.groups.reserve(world_.size());
+    for (std::size_t i = 0; world_.has_ignored_groups() && i < world_.size(); ++i)
+      now.groups.push_back(world_.group(i));
     if (now == rules_) return;
-    pairs_.find_all();
+    pairs_.find_all(bodies_with_partners(world_));
     rules_ = std::move(now);
   }
   void load_bodies() {
@@ -336,7 +340,7 @@ class RigidStepper {
     rows_.rows.resize(contact_rows_), rows_.blocks.resize(active_.size());
     joint_rows_.clear();
     if (joints_.empty() && !world_.has_traits()) return;
-    for (RigidBody<Real, Dim>& body : bodies_) body.stiffening = {};
+    for (const ActingJoint& acting : acting_joints_) bodies_[acting.a].stiffening = bodies_[acting.b].stiffening = {};
     const Real h = substep();
     const Softness<Real> soft = softness_of_joints();
     const JointHardness<Real> direct{.h = h, .rate = 1 / h, .softness = Real(0), .fastest_push = options_.fastest_push};
@@ -947,6 +951,7 @@ class RigidStepper {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> apart{};  // by joints
     std::vector<bool> are_fixed{};
     std::vector<std::array<std::uint64_t, 2>> masks{};
+    std::vector<std::uint32_t> groups{};
     friend bool operator==(const Rules&, const Rules&) = default;
   };
   /// A joint of this step.
