@@ -29,6 +29,19 @@ template <class Real>
   return {w / a1, a2 / (1 + a2), 1 / (1 + a2)};
 }
 
+/// A sweep corrects a contact by this multiple of what would solve it alone (successive over-relaxation: D. M. Young,
+/// 1954; with impulses that only push, O. L. Mangasarian, 1977, for factors below 2). With 1, one sweep in a substep
+/// lets a tall column at a third of the rate of substeps vibrate for ever: the map of a substep, linear while all
+/// contacts press, has for 80 balls an eigenvalue of 1.0004, with 1.4 of 0.997, and for 20 of 0.996 and 0.986. What it
+/// multiplies is taken out again when contacts relax, so that no lasting velocity comes of it.
+template <class Real>
+constexpr Real over_relaxation = Real(1.4);
+
+template <class Real>
+[[nodiscard]] Softness<Real> over_relaxed(const Softness<Real>& soft) {
+  return {soft.rate, soft.of_mass * over_relaxation<Real>, soft.of_impulse * over_relaxation<Real>};
+}
+
 template <class Real>
 struct ContactStep {
   Real h{};

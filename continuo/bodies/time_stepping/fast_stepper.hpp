@@ -276,13 +276,12 @@ class FastMotion<Real, Dim>::Stepper {
   }
   [[nodiscard]] Real hertz_of(const Real& h) const { return std::min(options_.hertz, 1 / (3 * h)); }
   [[nodiscard]] ContactStep<Real> contact_step(const Real& h) const {
-    // At a frequency of 0.45 of the rate of substeps or more, a column of balls under a mass of ten balls never comes
-    // to rest. The threshold of a disturbance was found by measurement: it keeps the overlaps in a falling heap below a
+    // The threshold of a disturbance was found by measurement: it keeps the overlaps in a falling heap below a
     // hundredth of the radius.
-    constexpr auto disturbance = static_cast<Real>(0.0008);
+    constexpr auto disturbance = static_cast<Real>(0.0011);
     return {.h = h,
-            .soft = softness(hertz_of(h), options_.damping, h),
-            .fastest_push = options_.fastest_push,
+            .soft = over_relaxed(softness(hertz_of(h), options_.damping, h)),
+            .fastest_push = options_.fastest_push / over_relaxation<Real>,
             .friction = friction_,
             .disturbance = disturbance * list_.median_radius(),
             .disturbance_of_radius = disturbance};
