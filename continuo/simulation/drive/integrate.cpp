@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include <continuo/simulation/drive/integrate.hpp>
@@ -12,6 +13,17 @@
 #include <continuo/simulation/program/event_names.hpp>
 #include <continuo/solve/integrator.hpp>
 #include <continuo/solve/with_method.hpp>
+
+namespace continuo {
+
+template class Steps<model::ModelSystem, model::ModelSystem::X>;
+template void Steps<model::ModelSystem, model::ModelSystem::X>::transfer_base(model::StateWriter&);
+template void Steps<model::ModelSystem, model::ModelSystem::X>::transfer_base(model::StateReader&);
+template Consistency make_consistent(model::ModelSystem&, const double&, model::ModelSystem::X&,
+                                     const Tolerance<double>&, SolvedTo);
+template std::string problem_of_result(model::ModelSystem&, const double&, const model::ModelSystem::X&);
+
+}  // namespace continuo
 
 namespace continuo::model {
 

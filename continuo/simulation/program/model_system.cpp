@@ -29,6 +29,11 @@ ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<
   guard_values_.resize(program_->model.events.size());
   step_codes_.resize(derivatives_.size());
 }
+ModelSystem::ModelSystem(const ModelSystem&) = default;
+ModelSystem::ModelSystem(ModelSystem&&) noexcept = default;
+ModelSystem& ModelSystem::operator=(const ModelSystem&) = default;
+ModelSystem& ModelSystem::operator=(ModelSystem&&) noexcept = default;
+ModelSystem::~ModelSystem() = default;
 
 NativeLaneEvaluation ModelSystem::step_code(StepFormula formula) {
   if (!held_.empty() || has_switches()) return nullptr;

@@ -32,6 +32,12 @@ class ModelSystem {
 
   /// `variables` is a whole register file as `start_values` gives it; the run begins in the model's start mode.
   ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables);
+  // Compiled once, not with every method: there is much to copy.
+  ModelSystem(const ModelSystem&);
+  ModelSystem(ModelSystem&&) noexcept;
+  ModelSystem& operator=(const ModelSystem&);
+  ModelSystem& operator=(ModelSystem&&) noexcept;
+  ~ModelSystem();
 
   void operator()(double t, const X& x, X& dxdt) {
     if (switched_ && switched_->any(mode_)) {
