@@ -3,7 +3,8 @@
 # a file proves that it includes what it uses.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
-# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [INNER_PARTS ...] [OPTIONAL_PARTS ...] [FOLDERS ...] [BRIEF ...] [ALONE ...] [LOADED ...] [APART ...]):
+# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [INNER_PARTS ...] [OPTIONAL_PARTS ...] [FOLDERS ...] [BRIEF ...]
+#                  [ALONE ...] [LOADED ...] [APART ...] [APART_USES ...]):
 # the library of a module, which is a folder of continuo/; static when it has sources. The target is continuo_NAME,
 # Continuo::NAME to those who find the package.
 #   FUZZED   it reads what others wrote, and counts its branches for the fuzzer where the sanitizers are on.
@@ -16,10 +17,12 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 #            time, with -O1.
 #   ALONE    those that compute, or are large: never joined, so that what is inlined in them depends on themselves alone.
 #   LOADED   those that the command loads when they are asked for (modules.cmake): alone, and fit for a shared library.
-#   APART    those that neither the command nor another module uses: a library of their own, which everybody else links
-#            with the module's, so that the command is built without them.
+#   APART    those that the command does not use: a library of their own, NAME_apart, which everybody else links with the
+#            module's, so that the command is built without them. A module that needs them has NAME_apart among its USES.
+#            APART_USES: modules that these alone use.
 function(continuo_library name)
-  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;INNER_PARTS;OPTIONAL_PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART" ${ARGN})
+  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;INNER_PARTS;OPTIONAL_PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART;APART_USES"
+                        ${ARGN})
   set(folders ${PROJECT_SOURCE_DIR}/continuo/${name})
   foreach(folder IN LISTS module_FOLDERS)
     list(APPEND folders ${PROJECT_SOURCE_DIR}/continuo/${name}/${folder})
@@ -66,19 +69,24 @@ function(continuo_library name)
   target_include_directories(continuo_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(continuo_${name} ${scope} ${module_USES} ${module_PARTS} ${module_OPTIONAL_PARTS})
-  if(module_INNER_PARTS)
-    target_link_libraries(continuo_${name} PRIVATE $<BUILD_INTERFACE:${module_INNER_PARTS}>)
-  endif()
   set_target_properties(continuo_${name} PROPERTIES EXPORT_NAME ${name} CONTINUO_WITHOUT_APART ON)
   if(apart)
     add_library(continuo_${name}_apart STATIC ${apart})
     continuo_library_flags(continuo_${name}_apart)
-    target_link_libraries(continuo_${name}_apart PUBLIC continuo_${name})
+    list(TRANSFORM module_APART_USES PREPEND continuo_ OUTPUT_VARIABLE apart_uses)
+    target_link_libraries(continuo_${name}_apart PUBLIC continuo_${name} ${apart_uses})
     set_target_properties(continuo_${name}_apart PROPERTIES EXPORT_NAME ${name}_apart CONTINUO_WITHOUT_APART ON)
     set(is_wanted $<NOT:$<BOOL:$<TARGET_PROPERTY:CONTINUO_WITHOUT_APART>>>)  # by the target that links the module
     target_link_libraries(continuo_${name} INTERFACE $<${is_wanted}:$<TARGET_NAME:continuo_${name}_apart>>)
     set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name}_apart)
-    set_property(GLOBAL PROPERTY CONTINUO_USES_${name}_apart ${name})
+    set_property(GLOBAL PROPERTY CONTINUO_USES_${name}_apart ${name} ${module_APART_USES})
+  endif()
+  if(module_INNER_PARTS)
+    foreach(library IN ITEMS continuo_${name} continuo_${name}_apart)
+      if(TARGET ${library})
+        target_link_libraries(${library} PRIVATE $<BUILD_INTERFACE:${module_INNER_PARTS}>)
+      endif()
+    endforeach()
   endif()
   add_library(Continuo::${name} ALIAS continuo_${name})
   set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name})
