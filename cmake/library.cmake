@@ -4,7 +4,7 @@
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
 # continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [INNER_PARTS ...] [OPTIONAL_PARTS ...] [FOLDERS ...] [BRIEF ...]
-#                  [ALONE ...] [LOADED ...] [APART ...] [APART_USES ...]):
+#                  [ALONE ...] [LOADED ...] [APART ...] [APART_USES ...] [COMMON ...]):
 # the library of a module, which is a folder of continuo/; static when it has sources. The target is continuo_NAME,
 # Continuo::NAME to those who find the package.
 #   FUZZED   it reads what others wrote, and counts its branches for the fuzzer where the sanitizers are on.
@@ -20,8 +20,9 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 #   APART    those that the command does not use: a library of their own, NAME_apart, which everybody else links with the
 #            module's, so that the command is built without them. A module that needs them has NAME_apart among its USES.
 #            APART_USES: modules that these alone use.
+#   COMMON   headers that most of its sources read: precompiled, as those of the standard library.
 function(continuo_library name)
-  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;INNER_PARTS;OPTIONAL_PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART;APART_USES"
+  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;INNER_PARTS;OPTIONAL_PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART;APART_USES;COMMON"
                         ${ARGN})
   set(folders ${PROJECT_SOURCE_DIR}/continuo/${name})
   foreach(folder IN LISTS module_FOLDERS)
@@ -123,7 +124,13 @@ macro(continuo_library_flags target)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
     set(headers continuo_fuzzed_headers)
   endif()
-  if(fmt::fmt IN_LIST module_PARTS)  # as the precompiled headers have
+  if(module_COMMON AND CONTINUO_PRECOMPILED_HEADERS AND NOT CONTINUO_SANITIZE AND NOT "${target}" MATCHES "_brief$")
+    if("${target}" STREQUAL "continuo_${name}")
+      target_precompile_headers(${target} PRIVATE ${continuo_standard_headers} ${module_COMMON})
+    else()
+      continuo_reuse_headers(${target} continuo_${name})
+    endif()
+  elseif(fmt::fmt IN_LIST module_PARTS)  # as the precompiled headers have
     continuo_reuse_headers(${target} ${headers})
   endif()
 endmacro()
