@@ -77,7 +77,7 @@ X rates_at(std::vector<Point>& points) {
   return rates;
 }
 
-DerivativeEntry named(const Point& point, const JacobianEntry<double>& entry) {
+DerivativeEntry named(const Point& point, const continuo::JacobianEntry<double>& entry) {
   return {.name = entry_name(point.system, entry, point.x.size()),
           .mode = point.system.model().modes[point.system.mode()].name,
           .t = point.t,
