@@ -88,7 +88,7 @@ std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim
   ManifoldSolver<Real, Dim> solver(team, kernels);
   solver.begin(scene.bodies, scene.contacts, scene.heads(), scene.which);
   const Real h = Real(1) / 240;
-  solver.set_hardness(h, softness(Real(30), Real(10), h), Real(4));
+  solver.set_hardness(h, softness(Real(30), Real(10), h), softness(Real(60), Real(10), h), Real(4));
   std::vector<Real> numbers;
   for (const ManifoldPass pass : {ManifoldPass::begin, ManifoldPass::push, ManifoldPass::relax}) {
     solver.sweep(pass);
@@ -136,7 +136,8 @@ void expect_what_rows_give() {
     const auto found = scene.contacts[0];
     const std::vector<double> numbers = solved(scene, manifold_kernels<double, Dim>().back());
     const double h = 1.0 / 240;
-    const Softness<double> soft = softness(30.0, 10.0, h);
+    const bool is_at_fixed = scene.bodies[found.a].is_fixed() || scene.bodies[found.b].is_fixed();
+    const Softness<double> soft = softness(is_at_fixed ? 60.0 : 30.0, 10.0, h);
     const ContactHardness<double> hardness{h, soft.rate, soft.of_impulse / soft.of_mass, 4};
     auto &a = scene.bodies[found.a], &b = scene.bodies[found.b];
     std::vector<ConstraintRow<double, Dim>> rows;

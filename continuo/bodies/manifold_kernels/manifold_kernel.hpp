@@ -348,6 +348,13 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   template <ManifoldPass pass>
   [[gnu::always_inline]] void take_motions() {
     moved_apart_ = L(Real(0));
+    if constexpr (pass == ManifoldPass::push) {
+      const auto is_fixed = xsimd::min(a_.inverse_mass, b_.inverse_mass) == L(Real(0));
+      const auto choose = [&](Real Softness<Real>::* part) {
+        return xsimd::select(is_fixed, L(task_.soft_at_fixed.*part), L(task_.soft.*part));
+      };
+      soft_ = {choose(&Softness<Real>::rate), choose(&Softness<Real>::of_mass), choose(&Softness<Real>::of_impulse)};
+    }
     if constexpr (pass != ManifoldPass::rebound) {
       const auto of_a = LaneMotion<L, Dim>::load(task_.bodies, numbers_a_, frame_);
       const auto of_b = LaneMotion<L, Dim>::load(task_.bodies, numbers_b_, frame_);
@@ -477,9 +484,9 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       const auto is_apart = apart > zero;  // then it may close within the substep
       const L closing = apart * L(1 / task_.h);
       if constexpr (pass == ManifoldPass::push) {
-        bias = xsimd::select(is_apart, closing, xsimd::max(apart * L(task_.rate), L(-task_.fastest_push)));
-        of_mass = xsimd::select(is_apart, one, L(task_.of_mass));
-        of_impulse = xsimd::select(is_apart, zero, L(task_.of_impulse));
+        bias = xsimd::select(is_apart, closing, xsimd::max(apart * soft_.rate, L(-task_.fastest_push)));
+        of_mass = xsimd::select(is_apart, one, soft_.of_mass);
+        of_impulse = xsimd::select(is_apart, zero, soft_.of_impulse);
       } else {
         bias = xsimd::select(is_apart, closing, zero);
       }
@@ -497,6 +504,7 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   L mass_;  // the sum of the inverse ones
   V velocity_, impulse_, turned_a_, turned_b_;
   L moved_apart_;
+  Softness<L> soft_;
   S spin_a_, spin_b_, first_spin_a_, first_spin_b_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <continuo/bodies/contact_solver/contact_step.hpp>
 #include <continuo/bodies/manifold_kernels/solver_states.hpp>
 
 namespace continuo {
@@ -63,7 +64,8 @@ struct ManifoldTask {
   const BatchHead* heads = nullptr;
   const std::uint32_t *a = nullptr, *b = nullptr;  // the bodies of each lane of each batch
   Real h{};                                        // of the substep
-  Real rate{}, of_mass{}, of_impulse{};            // of soft contacts
+  Softness<Real> soft{};                           // of contacts and joints
+  Softness<Real> soft_at_fixed{};                  // of contacts with bodies that never move
   Real fastest_push{};
   Real deep{};  // an overlap of more is
 };

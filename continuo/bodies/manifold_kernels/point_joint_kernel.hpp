@@ -78,7 +78,7 @@ class PointJointBatch : BatchOfConstraints<L, Dim, PointJointLayout<Dim>> {
     const V so_far = vector(At::impulse);
     const V rigid = change_for(residual) * L(Real(-1));
     V change = rigid;
-    if constexpr (is_pushing) change = rigid * L(task_.of_mass) - so_far * L(task_.of_impulse);
+    if constexpr (is_pushing) change = rigid * L(task_.soft.of_mass) - so_far * L(task_.soft.of_impulse);
     put(At::impulse, so_far + change);
     push(change, arm_a, arm_b);
     store();
@@ -100,7 +100,8 @@ class PointJointBatch : BatchOfConstraints<L, Dim, PointJointLayout<Dim>> {
     const L speed = norm(a_.v) + norm(b_.v) + norm(arm_a) * norm(a_.spin) + norm(arm_b) * norm(b_.spin);
     const L fastest = xsimd::select(error <= speed * L(task_.h / 2), speed, L(task_.fastest_push));
     const L arms = norm(vector(At::first_arm_a)) + norm(vector(At::first_arm_b));
-    return apart * xsimd::min(L(task_.rate), xsimd::max(fastest, arms * L(task_.rate)) / xsimd::max(error, L(least)));
+    return apart *
+           xsimd::min(L(task_.soft.rate), xsimd::max(fastest, arms * L(task_.soft.rate)) / xsimd::max(error, L(least)));
   }
   /// What an impulse of 1 along each axis changes of the velocity of b against a is (1 / mass_a + 1 / mass_b) I plus
   /// what it turns, which is positive semidefinite. So no pivot is below the first part, whatever is rounded.

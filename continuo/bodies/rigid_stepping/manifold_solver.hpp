@@ -46,10 +46,11 @@ class ManifoldSolver {
         .bodies = states_.data(), .values = value(0, 0, 0), .heads = heads_.data(), .a = a_.data(), .b = b_.data()};
     sweep(ManifoldPass::prepare);
   }
-  /// How contacts are held apart in the substeps of the step.
-  void set_hardness(const Real& h, const Softness<Real>& soft, const Real& fastest_push) {
+  /// How contacts are held apart in the substeps of the step, and how those with bodies that never move.
+  void set_hardness(const Real& h, const Softness<Real>& soft, const Softness<Real>& soft_at_fixed,
+                    const Real& fastest_push) {
     task_.h = h;
-    task_.rate = soft.rate, task_.of_mass = soft.of_mass, task_.of_impulse = soft.of_impulse;
+    task_.soft = soft, task_.soft_at_fixed = soft_at_fixed;
     task_.fastest_push = fastest_push;
   }
   /// From which overlap on points are deep.

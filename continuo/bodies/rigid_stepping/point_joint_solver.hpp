@@ -58,7 +58,7 @@ class PointJointSolver {
   /// How joints are held in the substeps of the step.
   void set_hardness(const Real& h, const Softness<Real>& soft, const Real& fastest_push) {
     task_.h = h;
-    task_.rate = soft.rate, task_.of_mass = soft.of_mass, task_.of_impulse = soft.of_impulse;
+    task_.soft = soft;
     task_.fastest_push = fastest_push;
   }
   [[nodiscard]] bool empty() const { return size_ == 0; }
