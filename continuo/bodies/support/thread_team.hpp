@@ -82,8 +82,7 @@ class ThreadTeam {
     for (std::size_t i = 0; i < threads_; ++i)
       tickets_[i].store(number_of_loop_ << 32 | (loop_.blocks * (i + 1) / threads_) << 16 | loop_.blocks * i / threads_,
                         std::memory_order_release);
-    while (take_block(0)) {
-    }
+    do_blocks(0);
     for (int idle = 0; done_.load(std::memory_order_acquire) != loop_.blocks; ++idle) wait(idle);
     if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(error_, nullptr));
   }
@@ -110,30 +109,42 @@ class ThreadTeam {
     std::atomic<ThreadTeam*> team_;
   };
 
+  /// Waits for loops by reading its own ticket alone: others would have to share theirs while they take blocks.
   void help(std::size_t number) {
-    for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle)
-      take_block(number) ? void(idle = 0) : wait(idle);
+    std::uint64_t last_loop = 0;
+    for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle) {
+      const std::uint64_t loop = tickets_[number].load(std::memory_order_acquire) >> 32;
+      if (loop == last_loop) {
+        wait(idle);
+        continue;
+      }
+      last_loop = loop, idle = 0;
+      do_blocks(number);
+    }
   }
-  /// Does the next block of the present loop, from the thread's own part or that of another; false where none is left.
-  [[nodiscard]] bool take_block(std::size_t thread) {
+  /// Does the blocks of the present loop that are left, from the thread's own part and then those of others. A loop
+  /// cannot end before a thread has counted the blocks that it has taken, so that all are of the same loop; they are
+  /// counted together, as the counter is shared.
+  void do_blocks(std::size_t thread) {
+    std::size_t count = 0;
     for (std::size_t i = 0; i < threads_; ++i)
-      if (take_block_of(tickets_[(thread + i) % threads_])) return true;
-    return false;
+      while (do_block_of(tickets_[(thread + i) % threads_])) ++count;
+    if (count > 0) done_.fetch_add(count, std::memory_order_release);
   }
-  /// A loop cannot end while a thread has one of its blocks, so that the data read below belongs to this loop. The
-  /// ticket contains the number of its loop, so that an old ticket is invalid.
-  [[nodiscard]] bool take_block_of(Ticket& of_part) {
+  /// Does the next block of a part; false where none is left. The ticket contains the number of its loop, so that an
+  /// old ticket is invalid.
+  [[nodiscard]] bool do_block_of(Ticket& of_part) {
     std::uint64_t ticket = of_part.load(std::memory_order_acquire);
-    const std::uint64_t end = ticket >> 16 & 0xffff, next = ticket & 0xffff;
-    if (next >= end) return false;
-    if (!of_part.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_relaxed))
-      return true;
+    std::uint64_t next;
+    do {
+      next = ticket & 0xffff;
+      if (next >= (ticket >> 16 & 0xffff)) return false;
+    } while (!of_part.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_acquire));
     try {
       loop_.act(loop_.context, next);
     } catch (...) {
       if (!has_failed_.exchange(true)) error_ = std::current_exception();
     }
-    done_.fetch_add(1, std::memory_order_release);
     return true;
   }
   /// A loop ends within microseconds; where there are more threads than processors, another needs this one.
