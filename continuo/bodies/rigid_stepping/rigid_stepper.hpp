@@ -243,17 +243,21 @@ class RigidStepper {
   }
   /// The blocks of contacts, still without rows, and those of joints.
   void gather_blocks() {
-    rows_.clear(), active_.clear();
-    has_restitution_ = false;
     const auto heads = contacts_.heads();
+    rows_.clear();
+    rows_.blocks.resize(heads.size()), active_.resize(heads.size());
+    has_restitution_ = false;
+    const bool all_push = !world_.has_traits() && !world_.may_push;
+    std::size_t count = 0;
     for (std::uint32_t k = 0; k < heads.size(); ++k) {
       const ContactHead& head = heads[k];
-      if (head.points == 0 || (!moves(head.a) && !moves(head.b)) || !pushes(head, k)) continue;
-      rows_.blocks.push_back(
-          {.a = head.a, .b = head.b, .rows = static_cast<std::uint16_t>(head.points * Dim), .points = head.points});
-      active_.push_back(k);
+      if (head.points == 0 || (!moves(head.a) && !moves(head.b)) || !(all_push || pushes(head, k))) continue;
+      rows_.blocks[count] = {
+          .a = head.a, .b = head.b, .rows = static_cast<std::uint16_t>(head.points * Dim), .points = head.points};
+      active_[count++] = k;
       has_restitution_ |= head.has_restitution;
     }
+    rows_.blocks.resize(count), active_.resize(count);
     contact_rows_ = 0;
     find_acting_joints();
     gather_joints(Dim);
@@ -289,19 +293,28 @@ class RigidStepper {
       const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
       if (has_joints ? is_large && (is_heap || !solvers_[k].is_direct()) : !is_cheap) is_swept_[k] = 1;
     });
-    swept_.clear();
     is_in_lanes_.assign(world_.size(), 0);
     for (std::size_t k = 0; k < islands_.size(); ++k)
       if (is_swept_[k])
         for (const std::uint32_t i : islands_.bodies(k)) is_in_lanes_[i] = 1;
-    const auto is_in_lanes = [this](std::uint32_t i) { return i < world_.size() && is_in_lanes_[i] != 0; };
+    const auto acts = [this](const RowBlock& block) {
+      return (block.a < world_.size() && is_in_lanes_[block.a] != 0) ||
+             (block.b < world_.size() && is_in_lanes_[block.b] != 0);
+    };
+    swept_.resize(active_.size());
+    std::size_t count = 0;
+    for (std::uint32_t block = 0; block < active_.size(); ++block) {
+      swept_[count] = active_[block];
+      count += acts(rows_.blocks[block]) ? 1 : 0;
+    }
+    swept_.resize(count);
     swept_joints_.clear();
-    for (std::uint32_t block = 0; block < rows_.blocks.size(); ++block) {
-      const bool acts = is_in_lanes(rows_.blocks[block].a) || is_in_lanes(rows_.blocks[block].b);
-      const bool is_point = block >= active_.size() && may_be_in_lanes(block);
-      if (is_point) acting_joints_[block - active_.size()].is_in_lanes = acts;
-      if (!acts || is_point) continue;
-      block < active_.size() ? swept_.push_back(active_[block]) : swept_joints_.push_back(block);
+    for (auto block = static_cast<std::uint32_t>(active_.size()); block < rows_.blocks.size(); ++block) {
+      const bool is_point = may_be_in_lanes(block), is_acting = acts(rows_.blocks[block]);
+      if (is_point) {
+        acting_joints_[block - active_.size()].is_in_lanes = is_acting;
+      } else if (is_acting)
+        swept_joints_.push_back(block);
     }
     find_bodies_of_swept_joints();
   }
