@@ -17,6 +17,7 @@ struct Material {
   Real restitution = Real(0);         // e: speed of parting over speed of approach, 0 to 1
   Real friction = Real(0.5);          // Coulomb's: greatest tangential over normal impulse
   Real rolling_resistance = Real(0);  // torque over normal force, a length in units of the radius
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// How the value for a contact follows from the values of its two surfaces.

@@ -31,11 +31,14 @@ class ManifoldSolver {
                           const ManifoldKernels<Real, Dim>& kernels = manifold_kernels<Real, Dim>().back())
       : team_(team), kernels_(kernels) {}
 
-  /// Takes the bodies, and the contacts with numbers `which`, at the beginning of a step; `heads` are those of all.
+  /// Takes the bodies, and the contacts with numbers `which`, at the beginning of a step; `heads` are those of all, and
+  /// `are_same` tells that these, the numbers and what moves are those of the last step.
   void begin(Bodies bodies, std::span<const PartContact<Real, Dim>> contacts, std::span<const ContactHead> heads,
-             std::span<const std::uint32_t> which) {
+             std::span<const std::uint32_t> which, bool are_same = false) {
     take_bodies(bodies);
-    colour(heads, which);
+    if (!are_same) colour(heads, which);
+    heads_.assign(lanes_.batches(), {});
+    least_separation_.assign(lanes_.batches(), std::numeric_limits<Real>::infinity());
     team_.for_each(0, heads_.size(), 4, [&](std::size_t from, std::size_t to) {
       for (std::size_t batch = from; batch < to; ++batch) {
         prefetch_contacts(batch + 1, contacts, which);
@@ -152,7 +155,6 @@ class ManifoldSolver {
     const std::size_t lanes = kernels_.lanes;
     if (colours_.find(coloured_, moves_.size())) lanes_.find(colours_, lanes);
     const std::size_t batches = lanes_.batches();
-    heads_.assign(batches, {}), least_separation_.assign(batches, std::numeric_limits<Real>::infinity());
     const auto spare = static_cast<std::uint32_t>(moves_.size());  // a body that never moves
     a_.assign(batches * lanes, spare), b_.assign(batches * lanes, spare);
     values_.resize((batches * lanes * At::rows * sizeof(Real) + sizeof(Line) - 1) / sizeof(Line) + 1);

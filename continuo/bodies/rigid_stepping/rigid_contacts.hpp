@@ -33,6 +33,7 @@ struct ContactHead {
   std::uint32_t a = 0, b = 0;  // bodies
   std::uint8_t points = 0;
   bool has_restitution = false;
+  friend bool operator==(const ContactHead&, const ContactHead&) = default;
 };
 template <class Real, int Dim>
 [[nodiscard]] ContactHead head_of(const PartContact<Real, Dim>& found) {
@@ -50,7 +51,9 @@ class RigidContacts {
   void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
             std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active) {
     set_mesh_contacts_apart(pairs.first_mesh());
+    have_other_heads_ |= heads_.size() != contacts_.size();
     heads_.resize(contacts_.size());
+    take_materials(world);
     blocks_.resize(std::clamp<std::size_t>(pairs.pairs().size() / 256, 1, 1024));
     team.share(blocks_.size(), [&](std::size_t k) {
       begin_block(k, pairs.pairs());
@@ -66,6 +69,8 @@ class RigidContacts {
   [[nodiscard]] std::span<const PartContact<Real, Dim>> all() const { return contacts_; }
   /// The same, since the contacts were found.
   [[nodiscard]] std::span<const ContactHead> heads() const { return heads_; }
+  /// Whether a head has changed since this was last asked, as it rarely does in a heap at rest.
+  [[nodiscard]] bool take_change_of_heads() { return std::exchange(have_other_heads_, false); }
   /// Those of parts and walls.
   [[nodiscard]] std::span<const PartContact<Real, Dim>> without_meshes() const { return all().first(without_meshes_); }
   /// The shapes of bodies have changed: no points are carried along, see `follow`.
@@ -82,6 +87,7 @@ class RigidContacts {
     if constexpr (Archive::reads) {
       if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
       are_apart_ = false;
+      materials_ = {};
       contacts_.assign(static_cast<std::size_t>(count), {});
     }
     for (PartContact<Real, Dim>& found : contacts_) {
@@ -121,6 +127,7 @@ class RigidContacts {
     std::size_t first_pair = 0, last_pair = 0;  // up to the one before the last
     std::size_t first = 0, last = 0;            // contacts of before, likewise; those that are lost have no points
     std::size_t lost = 0, place = 0;            // how many are; where the contacts of now begin
+    bool has_other_heads = false;               // among those of before that are left
     std::vector<PartContact<Real, Dim>> born;
 
     [[nodiscard]] std::size_t size() const { return last - first - lost + born.size(); }
@@ -149,7 +156,7 @@ class RigidContacts {
     };
     block.first_pair = first_pair(k), block.last_pair = first_pair(k + 1);
     block.first = first_contact(k), block.last = first_contact(k + 1);
-    block.lost = 0;
+    block.lost = 0, block.has_other_heads = false;
     block.born.clear();
   }
   template <class IsActive>
@@ -165,9 +172,12 @@ class RigidContacts {
       const bool is_old = old < block.last && contacts_[old].parts == pair;
       PartContact<Real, Dim>* const before = is_old ? &contacts_[old++] : nullptr;
       const auto [a, b] = bodies_of(pair, world, pairs);
-      if (before) before->a = a, before->b = b;
+      if (before) {
+        before->a = a, before->b = b;
+        if (have_other_materials_) combine_materials(world, *before);
+      }
       if (!is_active(a, b)) {
-        if (before) note_head(*before);
+        if (before) note_head(*before, block);
         continue;
       }
       const Real margin = margin_of(pair, pairs, step);
@@ -179,14 +189,37 @@ class RigidContacts {
           before ? *before
                  : block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
       update(world, pairs, bodies, margin, now);
-      if (before) note_head(now);
-      if (now.contact.size > 0) continue;
-      before ? void(++block.lost) : block.born.pop_back();
+      if (before) {
+        note_head(now, block);
+        if (now.contact.size == 0) ++block.lost;
+      } else if (now.contact.size == 0) {
+        block.born.pop_back();
+      } else {
+        combine_materials(world, now);
+      }
     }
     while (old < block.last) lose(contacts_[old++]);
   }
-  void note_head(const PartContact<Real, Dim>& of) {
-    heads_[static_cast<std::size_t>(&of - contacts_.data())] = head_of(of);
+  void note_head(const PartContact<Real, Dim>& of, Block& block) {
+    ContactHead& head = heads_[static_cast<std::size_t>(&of - contacts_.data())];
+    const ContactHead now = head_of(of);
+    block.has_other_heads |= head != now;
+    head = now;
+  }
+  /// What frictions and restitutions are combined from is most often what it was in the last step.
+  void take_materials(const World<Real, Dim>& world) {
+    std::vector<Material<Real>> of_walls;
+    for (const Wall<Real, Dim>& wall : world.walls()) of_walls.push_back(wall.material);
+    have_other_materials_ = world.combine_rule != materials_.rule || of_walls != materials_.of_walls ||
+                            !std::ranges::equal(world.material, materials_.of_bodies);
+    if (have_other_materials_)
+      materials_ = {world.combine_rule, {world.material.begin(), world.material.end()}, std::move(of_walls)};
+  }
+  static void combine_materials(const World<Real, Dim>& world, PartContact<Real, Dim>& found) {
+    const Material<Real>&of_a = world.material[found.a],
+          &of_b = found.b < world.size() ? world.material[found.b] : world.walls()[found.b - world.size()].material;
+    found.contact.friction = combined(world.combine_rule.friction, of_a.friction, of_b.friction);
+    found.contact.restitution = combined(world.combine_rule.restitution, of_a.restitution, of_b.restitution);
   }
   [[nodiscard]] static std::pair<std::uint32_t, std::uint32_t> bodies_of(const PartPair& pair,
                                                                          const World<Real, Dim>& world,
@@ -212,7 +245,9 @@ class RigidContacts {
     for (Block& block : blocks_) {
       block.place = size, size += block.size();
       are_same = are_same && block.lost == 0 && block.born.empty();
+      have_other_heads_ |= block.has_other_heads;
     }
+    have_other_heads_ |= !are_same;
     if (are_same) return;
     // Contacts are most of the memory of a heap: what they are put into has hardly more room than they need.
     if (merged_.capacity() < size) {
@@ -249,6 +284,7 @@ class RigidContacts {
     });
     for (const auto& found : found_) contacts_.insert(contacts_.end(), found.begin(), found.end());
     for (std::size_t k = heads_.size(); k < contacts_.size(); ++k) heads_.push_back(head_of(contacts_[k]));
+    have_other_heads_ |= !mesh_before_.empty() || contacts_.size() > without_meshes_;
   }
   template <class IsActive>
   void find_at_mesh(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
@@ -309,12 +345,17 @@ class RigidContacts {
     if (found.contact.size == 0) return;
     found.contact.rounding_a = part_a.rounding,
     found.contact.rounding_b = is_wall ? Real(0) : parts[found.parts.b].rounding;
-    const Material<Real>&of_a = world.material[a], &of_b = is_wall ? world.walls()[wall].material : world.material[b];
-    found.contact.friction = combined(world.combine_rule.friction, of_a.friction, of_b.friction);
-    found.contact.restitution = combined(world.combine_rule.restitution, of_a.restitution, of_b.restitution);
   }
+  /// What the materials of contacts with parts and walls were combined from.
+  struct Materials {
+    CombineRule rule{};
+    std::vector<Material<Real>> of_bodies{}, of_walls{};
+  };
   std::vector<PartContact<Real, Dim>> contacts_, merged_, mesh_before_;
   std::vector<ContactHead> heads_;  // of the contacts
+  bool have_other_heads_ = true;    // see take_change_of_heads
+  Materials materials_;
+  bool have_other_materials_ = true;  // since the last step
   std::size_t without_meshes_ = 0;
   bool are_apart_ = false;        // whether those with meshes are known
   std::uint32_t first_mesh_ = 0;  // in pairs, then

@@ -97,7 +97,7 @@ class RigidStepper {
     load();
     if (Status fault = find_contacts(); !fault) return fault;
     gather_blocks();
-    islands_.find(bodies_.size(), rows_.blocks, [this](std::uint32_t i) { return moves(i); });
+    find_islands();
     choose_solvers();
     gather_rows();
     begin_islands();
@@ -243,11 +243,27 @@ class RigidStepper {
   }
   /// The blocks of contacts, still without rows, and those of joints.
   void gather_blocks() {
+    const bool all_push = !world_.has_traits() && !world_.may_push;
+    const bool have_other_heads = contacts_.take_change_of_heads();
+    are_same_contacts_ = !have_other_heads && all_push && moves_ == moves_before_;
+    blocks_before_ = rows_.blocks.size();
+    if (!are_same_contacts_) gather_contacts(all_push);
+    // What may push is not known before each contact has been asked.
+    if (all_push) {
+      moves_before_ = moves_;
+    } else {
+      moves_before_.clear();
+    }
+    rows_.rows.clear();
+    rows_.blocks.resize(active_.size());
+    contact_rows_ = 0;
+    find_acting_joints();
+    gather_joints(Dim);
+  }
+  void gather_contacts(bool all_push) {
     const auto heads = contacts_.heads();
-    rows_.clear();
     rows_.blocks.resize(heads.size()), active_.resize(heads.size());
     has_restitution_ = false;
-    const bool all_push = !world_.has_traits() && !world_.may_push;
     std::size_t count = 0;
     for (std::uint32_t k = 0; k < heads.size(); ++k) {
       const ContactHead& head = heads[k];
@@ -258,9 +274,12 @@ class RigidStepper {
       has_restitution_ |= head.has_restitution;
     }
     rows_.blocks.resize(count), active_.resize(count);
-    contact_rows_ = 0;
-    find_acting_joints();
-    gather_joints(Dim);
+  }
+  /// Where contacts and bodies that move are those of the last step, and there are no joints, so are the islands.
+  void find_islands() {
+    const std::size_t contacts = active_.size();
+    are_same_islands_ = are_same_contacts_ && blocks_before_ == contacts && rows_.blocks.size() == contacts;
+    if (!are_same_islands_) islands_.find(bodies_.size(), rows_.blocks, [this](std::uint32_t i) { return moves(i); });
   }
   /// Joints that are to act in this step.
   void find_acting_joints() {
@@ -276,6 +295,7 @@ class RigidStepper {
   /// world is crowded. In others contacts are swept, several at once, and joints one by one between them.
   void choose_solvers() {
     solvers_.resize(islands_.size());
+    is_swept_before_.swap(is_swept_);
     const bool is_crowded = std::ssize(active_) > most_contacts_of_thick_islands;
     is_swept_.assign(islands_.size(), false);
     for_each_island([&](std::size_t k) {
@@ -301,13 +321,16 @@ class RigidStepper {
       return (block.a < world_.size() && is_in_lanes_[block.a] != 0) ||
              (block.b < world_.size() && is_in_lanes_[block.b] != 0);
     };
-    swept_.resize(active_.size());
-    std::size_t count = 0;
-    for (std::uint32_t block = 0; block < active_.size(); ++block) {
-      swept_[count] = active_[block];
-      count += acts(rows_.blocks[block]) ? 1 : 0;
+    are_same_in_lanes_ = are_same_islands_ && is_swept_ == is_swept_before_;
+    if (!are_same_in_lanes_) {
+      swept_.resize(active_.size());
+      std::size_t count = 0;
+      for (std::uint32_t block = 0; block < active_.size(); ++block) {
+        swept_[count] = active_[block];
+        count += acts(rows_.blocks[block]) ? 1 : 0;
+      }
+      swept_.resize(count);
     }
-    swept_.resize(count);
     swept_joints_.clear();
     for (auto block = static_cast<std::uint32_t>(active_.size()); block < rows_.blocks.size(); ++block) {
       const bool is_point = may_be_in_lanes(block), is_acting = acts(rows_.blocks[block]);
@@ -445,7 +468,7 @@ class RigidStepper {
   void begin_lanes() {
     const Real h = substep();
     const Softness<Real> soft = softness_of_contacts();
-    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_);
+    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_, are_same_in_lanes_);
     points_.begin(bodies_, manifolds_.states(), point_joints_);
     points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, softness_of_contacts_at_fixed(), options_.fastest_push);
@@ -1021,7 +1044,7 @@ class RigidStepper {
   std::vector<std::uint32_t> swept_;                        // the contacts of islands that are swept
   std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;                       // the bodies of these
-  std::vector<std::uint8_t> is_swept_;                      // of each island
+  std::vector<std::uint8_t> is_swept_, is_swept_before_;    // of each island
   std::vector<std::uint8_t> is_in_lanes_;                   // bodies of those islands, and bodies without contacts
   std::vector<std::uint8_t> is_easy_;                       // those that keep their spin, in gravity alone
   std::vector<std::uint32_t> easy_, in_lanes_;              // these, and the others, with driven ones
@@ -1030,11 +1053,15 @@ class RigidStepper {
   std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
   std::vector<RigidBody<Real, Dim>> bodies_;
   std::vector<std::uint8_t> moves_;  // whether each of them does: what goes through all contacts asks for no more
+  std::vector<std::uint8_t> moves_before_;  // when contacts were gathered; empty where that is to be done again
   RigidPairs<Real, Dim> pairs_;
   RigidContacts<Real, Dim> contacts_;
   Constraints<Real, Dim> rows_;
-  std::vector<std::uint32_t> active_;  // the contact of each block of rows
-  bool has_restitution_ = false;       // whether one of them has
+  std::vector<std::uint32_t> active_;                          // the contact of each block of rows
+  bool has_restitution_ = false;                               // whether one of them has
+  bool are_same_contacts_ = false;                             // that act, as in the last step
+  bool are_same_islands_ = false, are_same_in_lanes_ = false;  // likewise
+  std::size_t blocks_before_ = 0;                              // in the last step
   std::size_t contact_rows_ = 0;
   std::vector<JointHandle> joint_handles_;
   std::vector<KeptJoint> joints_;
