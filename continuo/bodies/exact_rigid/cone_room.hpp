@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
+#include <continuo/bodies/contacts/minimum_norm.hpp>
 
 namespace continuo {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
+#include <continuo/bodies/contacts/minimum_norm.hpp>
 
 namespace continuo {
 

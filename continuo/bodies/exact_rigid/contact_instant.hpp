@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/contacts/complementarity.hpp>
 #include <continuo/bodies/event_driven/exact_engine.hpp>
-#include <continuo/bodies/exact_rigid/complementarity.hpp>
 #include <continuo/bodies/exact_rigid/friction_cones.hpp>
 #include <continuo/bodies/exact_rigid/friction_modes.hpp>
 #include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
@@ -96,7 +96,7 @@ class ContactInstant {
         add_closed(approaching);
       if (Status fault = strike_together(approaching, round >= elastic_rounds, struck); !fault) return fault;
     }
-    return cannot_continue("an impact of many bodies does not end: bodies are jammed between others");
+    return cannot_continue("the impact does not end, bodies are jammed between others");
   }
 
   /// Of the contacts that do not part, those that last: forces press them together.
@@ -227,11 +227,13 @@ class ContactInstant {
       std::vector<Real> q = before;
       for (std::size_t k = 0; k < q.size(); ++k) q[k] -= rate_after[k];
       const std::vector<Real> rates = reduced.rates(joint_rates(joints), q);
-      Real least(0);
-      for (const Real& rate : rates)
-        least = std::max(least, 16 * std::numeric_limits<Real>::epsilon() * std::abs(rate));
-      impulses = complementary_forces<Real>(reduced.matrix(), rates, least);
-      if (impulses.empty()) return cannot_continue("the impulses of an impact cannot be found: bodies are jammed");
+      constexpr Real rounding = std::numeric_limits<Real>::epsilon();
+      Real greatest(0);
+      for (const Real& rate : rates) greatest = std::max(greatest, std::abs(rate));
+      impulses = complementary_forces<Real>(reduced.matrix(), rates, Real(16 * rounding * greatest));
+      if (impulses.empty()) return cannot_continue("bodies are jammed between others");
+      if (greatest_error<Real>(reduced.matrix(), rates, impulses) > std::sqrt(rounding) * greatest)
+        return cannot_continue("their masses differ too much");
     }
     ReducedContacts<Real, Dim> reduced(body_data(), joints, rows);
     const std::vector<Real> answers = reduced.answers(joint_rates(joints), impulses);

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/contacts/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/cone_room.hpp>
 #include <continuo/bodies/exact_rigid/lemke.hpp>
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/single_cone.hpp>
 
 namespace continuo {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/contacts/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/lemke.hpp>
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/rigid_system.hpp>
 
 namespace continuo {

@@ -15,12 +15,12 @@
 #include <vector>
 
 #include <continuo/bodies/constrained/constrained_system.hpp>
+#include <continuo/bodies/contacts/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/constraint_equations.hpp>
 #include <continuo/bodies/exact_rigid/contact_feature.hpp>
 #include <continuo/bodies/exact_rigid/contact_tangents.hpp>
 #include <continuo/bodies/exact_rigid/joint_constraints.hpp>
 #include <continuo/bodies/exact_rigid/joint_springs.hpp>
-#include <continuo/bodies/exact_rigid/minimum_norm.hpp>
 #include <continuo/bodies/exact_rigid/reduced_contacts.hpp>
 #include <continuo/bodies/forces.hpp>
 
