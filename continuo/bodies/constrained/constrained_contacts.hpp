@@ -206,7 +206,8 @@ class ConstrainedContacts {
       }
     }
     if (!is_plastic) return is_any;
-    const std::vector<Real> impulse = strike_together<Real, Dim>(world_, plastic, slow / 8);
+    // What is left of an approach is for the next round.
+    const std::vector<Real> impulse = strike_together<Real, Dim>(world_, plastic, slow / 8).along_normals;
     for (std::size_t k = 0; k < plastic.size(); ++k)
       if (impulse[k] > Real(0)) has_struck(plastic[k], impulse[k], journal);
     return true;

@@ -5,12 +5,14 @@
 // "Reflections on simultaneous impact", ACM Trans. Graph. 31, 2012.)
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include <continuo/bodies/contacts/direct_presses.hpp>
 #include <continuo/bodies/contacts/impulse.hpp>
 #include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 
@@ -33,9 +35,11 @@ class CollisionRound {
   using V = Vector<Real, Dim>;
   using One = Collision<Real, Dim>;
 
-  /// Applies the impulses of those that act, and sets them. `mover_of(body)` is the motion of a body.
+  /// Applies the impulses of those that act, and sets them. `mover_of(body)` is the motion of a body. False where the
+  /// impulses of those that share bodies were not found, in `most_sweeps` sweeps or directly: then what is applied is
+  /// only near to what they should be.
   template <class MoverOf>
-  void collide(std::span<One> all, MoverOf&& mover_of) {
+  [[nodiscard]] bool collide(std::span<One> all, MoverOf&& mover_of, int most_sweeps = 1000) {
     const auto mover = [&](std::uint32_t body) -> Mover<Real, Dim> {
       if (body == One::wall) return {no_velocity_, no_spin_, Real(0), Real(0), Real(0)};
       return mover_of(body);
@@ -55,25 +59,27 @@ class CollisionRound {
         one.impulse = continuo::collide(mover(one.a), mover(one.b), one.normal, one.material);
       }
     }
-    if (shared_.empty()) return;
-    part(mover);
-    resist_slip(mover);
+    if (shared_.empty()) return true;
+    list(mover);
+    const bool parts = part(most_sweeps), rubs = resist_slip(most_sweeps);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Mover<Real, Dim> of = mover(bodies_[k]);
+      of.velocity = sweeps_.mover(k + 1).v, of.spin = sweeps_.mover(k + 1).spin;
+    }
+    return parts && rubs;
   }
 
  private:
-  static constexpr int most_sweeps = 1000;
+  static constexpr int patience = 20;  // as many sweeps where there is no other way
+  static constexpr Real rounding = std::numeric_limits<Real>::epsilon();
 
   [[nodiscard]] bool is_shared(std::uint32_t body) const { return std::ranges::equal_range(bodies_, body).size() > 1; }
-  /// The impulses along the normals: each pair parts with its restitution at least, and with just that where it bears
-  /// an impulse. So the energy changes by impulse (parting - approach) / 2 = -(1 - e) impulse approach / 2 of each.
   template <class MoverOf>
-  void part(MoverOf&& mover) {
+  void list(MoverOf&& mover) {
     bodies_.erase(std::ranges::unique(bodies_).begin(), bodies_.end());
     sweeps_.clear();
-    fastest_ = Real(0);
     for (const std::uint32_t body : bodies_) {
       const Mover<Real, Dim> of = mover(body);
-      fastest_ = std::max(fastest_, length(of.velocity));
       sweeps_.add({of.velocity, of.spin, of.inverse_mass, of.radius * of.inverse_inertia, of.radius});
     }
     const auto place_of = [this](std::uint32_t body) {
@@ -85,41 +91,48 @@ class CollisionRound {
       sweeps_.add(one->normal, Real(0), place_of(one->a), place_of(one->b)).least =
           one->material.restitution * approach;
     }
-    sweeps_.sweep(least(), most_sweeps);
-    for (std::size_t k = 0; k < bodies_.size(); ++k) mover(bodies_[k]).velocity = sweeps_.mover(k + 1).v;
+  }
+  /// The impulses along the normals: each pair parts with its restitution at least, and with just that where it bears
+  /// an impulse. So the energy changes by impulse (parting - approach) / 2 = -(1 - e) impulse approach / 2 of each.
+  [[nodiscard]] bool part(int most_sweeps) {
+    const std::vector<Moving> before = sweeps_.movers();
+    Real fastest(0);
+    for (const Moving& one : before) fastest = std::max(fastest, length(one.v));
+    const auto sweep = [&](int sweeps) { sweeps_.sweep(rounding / 4 * fastest, sweeps); };
+    const auto is_found = [&](const Real& share) {
+      Real now = fastest;
+      for (const Moving& one : sweeps_.movers()) now = std::max(now, length(one.v));
+      return !(sweeps_.greatest_error() > share * now);
+    };
+    sweep(most_sweeps);
+    bool found = is_found(64 * rounding);
+    if (!found && press_directly<Real, Dim>(sweeps_, before)) {
+      found = is_found(std::sqrt(rounding));
+    } else if (!found) {
+      sweep(patience * most_sweeps);
+      found = is_found(16384 * rounding);  // an error that falls slowly from sweep to sweep is many times as large
+    }
     for (std::size_t k = 0; k < shared_.size(); ++k) shared_[k]->impulse = sweeps_.rows()[k].impulse.press;
+    return found;
   }
   /// Friction by these impulses, which lowers the energy as far as it can. Normal impulses that would answer it at once
   /// could raise the energy: what it makes approach is for the next round.
-  template <class MoverOf>
-  void resist_slip(MoverOf&& mover) {
-    rubs_.assign(shared_.size(), {});
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      Real greatest(0);
-      for (std::size_t n = 0; n < shared_.size(); ++n) {
-        const std::size_t k = sweep % 2 == 0 ? n : shared_.size() - 1 - n;
-        const One& one = *shared_[k];
-        const Real most = one.material.friction * one.impulse;
-        if (!(most > Real(0))) continue;
-        const Mover<Real, Dim> a = mover(one.a), b = mover(one.b);
-        const Real compliance = compliance_of_slip(a, b);
-        V total = rubs_[k] + slip_of(a, b, one.normal) * (1 / compliance);
-        if (const Real size = length(total); size > most) total *= most / size;
-        const V change = total - rubs_[k];
-        rub(a, b, one.normal, change);
-        rubs_[k] = total;
-        greatest = std::max(greatest, Real(length(change) * compliance));
-      }
-      if (!(greatest > least())) return;
+  [[nodiscard]] bool resist_slip(int most_sweeps) {
+    if (std::ranges::none_of(shared_, [](const One* one) { return one->material.friction > Real(0); })) return true;
+    Real fastest(0);
+    for (const Moving& one : sweeps_.movers())
+      fastest = std::max(fastest, Real(length(one.v) + one.radius * length(one.spin)));
+    for (std::size_t k = 0; k < shared_.size(); ++k) {
+      auto& row = sweeps_.row(k);
+      row.friction = shared_[k]->material.friction, row.has_known_press = true;
     }
+    return !(sweeps_.sweep(4 * rounding * fastest, patience * most_sweeps) > std::sqrt(rounding) * fastest);
   }
-  [[nodiscard]] Real least() const { return std::numeric_limits<Real>::epsilon() / 4 * fastest_; }
 
+  using Moving = typename ProjectedGaussSeidel<Real, Dim>::Moving;
   ProjectedGaussSeidel<Real, Dim> sweeps_;
   std::vector<std::uint32_t> bodies_;  // those that move: at first once for each collision
   std::vector<One*> shared_;           // those that share bodies
-  std::vector<V> rubs_;                // the impulses of their friction, on a
-  Real fastest_{};
   V no_velocity_{};
   Spin<Real, Dim> no_spin_{};
 };

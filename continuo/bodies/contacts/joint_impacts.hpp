@@ -10,17 +10,24 @@
 #include <span>
 #include <vector>
 
+#include <continuo/bodies/contacts/direct_presses.hpp>
 #include <continuo/bodies/contacts/persistent_contact.hpp>
 #include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
 
+template <class Real>
+struct JointImpulses {
+  std::vector<Real> along_normals{};  // of each pair
+  Real error{};                       // of a speed, about: the greatest change by the last sweep
+};
+
 /// Changes the velocities and spins of the world in up to 1000 sweeps, until these change no speed by more than
-/// `least`. Returns the normal impulses.
+/// `least`; where that does not suffice and nothing rubs, directly.
 template <class Real, int Dim>
-[[nodiscard]] std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching,
-                                                const Real& least) {
+[[nodiscard]] JointImpulses<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching,
+                                                  const Real& least) {
   std::vector<std::uint32_t> bodies;
   for (const Touching& pair : touching) {
     bodies.push_back(pair.a);
@@ -40,14 +47,16 @@ template <class Real, int Dim>
     sweeps.add(contact, place_of(pair.a), pair.with_wall() ? 0 : place_of(pair.b));
   }
   constexpr int most_sweeps = 1000;
-  sweeps.sweep(least, most_sweeps);
+  const auto free = sweeps.movers();
+  JointImpulses<Real> made{.error = sweeps.sweep(least, most_sweeps)};
+  const bool rubs = std::ranges::any_of(sweeps.rows(), [](const auto& row) { return row.friction > Real(0); });
+  if (made.error > least && !rubs && press_directly<Real, Dim>(sweeps, free)) made.error = sweeps.greatest_error();
   for (const std::uint32_t i : bodies) {
     const auto& mover = sweeps.mover(place_of(i));
     world.velocity[i] = mover.v, world.spin[i] = mover.spin;
   }
-  std::vector<Real> impulses;
-  for (const auto& row : sweeps.rows()) impulses.push_back(row.impulse.press);
-  return impulses;
+  for (const auto& row : sweeps.rows()) made.along_normals.push_back(row.impulse.press);
+  return made;
 }
 
 }  // namespace continuo

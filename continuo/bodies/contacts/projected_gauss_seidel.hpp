@@ -59,6 +59,7 @@ class ProjectedGaussSeidel {
     Real friction{}, resistance{}, arm{};
     Real of_normal{}, of_slip{}, of_roll{};  // changes of speed by impulses of 1
     Real least{};                            // the least speed of separation
+    bool has_known_press = false;            // the impulse along the normal stays as it is
     Impulse impulse{};
 
     /// Starts with an earlier impulse, its tangential parts projected to be across the present normal.
@@ -99,30 +100,45 @@ class ProjectedGaussSeidel {
   }
 
   /// Applies the impulses of the rows, and sweeps until a sweep changes no speed by more than `least`, at most `most`
-  /// times.
-  void begin_and_sweep(const Real& least, int most) {
+  /// times. Returns the greatest change of a speed by the last sweep.
+  Real begin_and_sweep(const Real& least, int most) {
     for (const Row& row : rows_) push(row, row.impulse);
-    sweep(least, most);
+    return sweep(least, most);
   }
-  /// Sweeps from the present state, until a sweep changes no speed by more than `least`, at most `most` times.
-  void sweep(const Real& least, int most) {
+  /// Sweeps from the present state, until a sweep changes no speed by more than `least`, at most `most` times. Returns
+  /// the greatest change of a speed by the last sweep: one above `least` tells that the impulses were not found.
+  Real sweep(const Real& least, int most) {
     before_.resize(rows_.size()), way_.resize(rows_.size());
     Real size_before(0);  // of the changes by the last two sweeps
+    Real greatest(0);     // the square of the greatest change of a speed
     for (int k = 0; k < most; k += 2) {
       for (std::size_t r = 0; r < rows_.size(); ++r) before_[r] = rows_[r].impulse;
-      Real greatest(0);
+      greatest = Real(0);
       for (Row& row : rows_) greatest = std::max(greatest, set_right(row));
-      if (!(greatest > least * least)) return;
+      if (!(greatest > least * least)) break;
       greatest = Real(0);
       for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) greatest = std::max(greatest, set_right(*row));
-      if (!(greatest > least * least)) return;
+      if (!(greatest > least * least)) break;
       if (k + 2 < most) size_before = go_on(size_before);
     }
+    using std::sqrt;
+    return sqrt(greatest);
+  }
+  /// By how much a speed of separation is wrong at most, of contacts without friction.
+  [[nodiscard]] Real greatest_error() const {
+    Real greatest(0);
+    for (const Row& row : rows_) {
+      const Real missing = row.least - dot(V(movers_[row.b].v - movers_[row.a].v), row.normal);
+      greatest =
+          std::max(greatest, std::max(missing, std::min(Real(-missing), Real(row.impulse.press * row.of_normal))));
+    }
+    return greatest;
   }
 
   [[nodiscard]] Moving& mover(std::size_t place) { return movers_[place]; }
   [[nodiscard]] const Moving& mover(std::size_t place) const { return movers_[place]; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  [[nodiscard]] Row& row(std::size_t k) { return rows_[k]; }
   /// Restores an earlier state of the movers and sets all impulses to 0.
   void restore(const std::vector<Moving>& movers) {
     movers_ = movers;
@@ -168,7 +184,9 @@ class ProjectedGaussSeidel {
     V rate = b.v - a.v;
     const Real parting = dot(rate, row.normal);
     Impulse change;
-    const Real press = std::max(Real(0), Real(row.impulse.press + (row.least - parting) / row.of_normal));
+    const Real press = row.has_known_press
+                           ? row.impulse.press
+                           : std::max(Real(0), Real(row.impulse.press + (row.least - parting) / row.of_normal));
     if (press == Real(0) && row.impulse.press == Real(0)) return Real(0);  // as for most pairs: near, but apart
     change.press = press - row.impulse.press;
     row.impulse.press = press;

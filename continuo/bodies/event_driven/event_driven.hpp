@@ -51,12 +51,14 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   Status run_to(const Real& t) override {
     std::size_t events = 0;
     met.reset();
+    if (!fault_) return fault_;
     while (queue_.time() <= t) {
       if (++events > options_.most_events) return too_many_events();
       if (events % 1024 == 0 && options_.is_interrupted()) return interrupted();
       flights_.now = std::max(flights_.now, queue_.time());
       prefetch_.look_ahead(queue_, flights_);
       handle(queue_.first());
+      if (!fault_) return fault_;
       if (met) return {};
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
     }
@@ -318,12 +320,27 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
       if (round > 0 && (at_once_.find_approaching(flights_, velocity) == 0 || are_caught(touching))) break;
       const bool piled = lose_what_piles_up(touching);
       if (piled && !is_heavy() && strike_simultaneously(i, j)) break;
-      round_.collide(touching, [this](std::uint32_t k) { return mover(k, true); });
+      if (!round_.collide(touching, [this](std::uint32_t k) { return mover(k, true); }))
+        give_up(numbers_of_struck(touching));
       for (std::size_t c = 0; c < touching.size(); ++c) note_round(touching[c], at_once_.wall_of(c));
+      if (!fault_) break;
     }
     for (std::size_t c = 0; c < touching.size(); ++c) stay(touching[c], at_once_.wall_of(c));
     for (const std::uint32_t k : at_once_.members()) predict(k);
     return true;
+  }
+  void give_up(std::vector<std::uint32_t> numbers) {
+    fault_ = impulses_not_found(flights_.now, std::move(numbers),
+                                "masses that differ less, fewer bodies that touch, or less friction would have some");
+  }
+  [[nodiscard]] std::vector<std::uint32_t> numbers_of_struck(std::span<const Collision<Real, Dim>> all) const {
+    std::vector<std::uint32_t> numbers;
+    for (const Collision<Real, Dim>& one : all)
+      for (const std::uint32_t k : {one.a, one.b})
+        if (one.acts && k != Collision<Real, Dim>::wall) numbers.push_back(flights_.plans[k].number);
+    std::ranges::sort(numbers);
+    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+    return numbers;
   }
   /// Whether one of the bodies of a contact that acts does what `does(material, body)` says.
   template <class Does>
@@ -379,9 +396,14 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     const V rate = i == j ? v : V(flights_.paths[j].v - v);
     simultaneous_.gather(flights_, i, Real(length(rate) * contact_time_));
     for (const std::uint32_t k : simultaneous_.members()) bring(k);
-    const Real speeds = length(v) + length(flights_.paths[j].v);
-    const Real least = std::numeric_limits<Real>::epsilon() * std::max(speeds, flights_.slow);
-    const std::vector<Real> impulses = simultaneous_.strike(world_, flights_, least);
+    const Real speeds = std::max(Real(length(v) + length(flights_.paths[j].v)), flights_.slow);
+    constexpr Real rounding = std::numeric_limits<Real>::epsilon();
+    const auto [impulses, error] = simultaneous_.strike(world_, flights_, Real(rounding * speeds));
+    if (error > std::sqrt(rounding) * speeds) {
+      std::vector<std::uint32_t> numbers;
+      for (const std::uint32_t k : simultaneous_.members()) numbers.push_back(flights_.plans[k].number);
+      give_up(std::move(numbers));
+    }
     for (std::size_t k = 0; k < impulses.size(); ++k) {
       if (!(impulses[k] > Real(0))) continue;
       const Touching& at = simultaneous_.pairs()[k];
@@ -475,6 +497,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   std::size_t crossings_since_sort_ = 0;
   std::vector<std::uint32_t> place_;  // of each number
   S no_spin_{};
+  Status fault_{};  // why the motion cannot go on
 };
 
 }  // namespace detail

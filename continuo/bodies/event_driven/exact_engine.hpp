@@ -2,6 +2,7 @@
 // The engines of the exact motion: for balls on parabolas, on paths under any forces, and under gravity where some
 // balls need the one and some the other; and for bodies of any shape with joints.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,22 @@ namespace continuo {
 }
 [[nodiscard]] inline Status too_many_events() {
   return cannot_continue("more events than `most_events`: bodies may be caught between others");
+}
+/// Names some of the bodies that take part in a collision.
+[[nodiscard]] inline std::string numbers_of(std::vector<std::uint32_t> bodies) {
+  constexpr std::size_t most_named = 8;
+  std::ranges::sort(bodies);
+  std::string names = bodies.size() == 1 ? "body " : "bodies ";
+  for (std::size_t k = 0; k < std::min(bodies.size(), most_named); ++k)
+    names += (k > 0 ? ", " : "") + std::to_string(bodies[k]);
+  if (bodies.size() > most_named) names += " and " + std::to_string(bodies.size() - most_named) + " more";
+  return names;
+}
+/// `why` may say how to mend it.
+template <class Real>
+[[nodiscard]] Status impulses_not_found(const Real& t, std::vector<std::uint32_t> bodies, const std::string& why) {
+  return cannot_continue("the impulses of the collision at t = " + std::to_string(t) + " of " +
+                         numbers_of(std::move(bodies)) + " were not found: " + why);
 }
 [[nodiscard]] inline Status other_bodies() {
   return cannot_continue("bodies have come or gone: the motion needs a `refresh`");

@@ -53,15 +53,15 @@ class SimultaneousImpacts {
     std::ranges::sort(pairs_);
   }
 
-  /// Applies impulses after which no two bodies approach each other by more than `least`. Returns the normal impulses,
-  /// pair by pair. The members must be at the present time.
-  [[nodiscard]] std::vector<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
+  /// Applies impulses after which no two bodies approach each other by more than `least`, if they are found. The
+  /// members must be at the present time.
+  [[nodiscard]] JointImpulses<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
     for (const std::uint32_t k : members_) {
       const std::uint32_t number = flights.plans[k].number;
       world.position[number] = flights.paths[k].x, world.velocity[number] = flights.paths[k].v;
       world.spin[number] = flights.turnings[k].spin;
     }
-    std::vector<Real> impulses = strike_together<Real, Dim>(world, pairs_, least);
+    JointImpulses<Real> impulses = strike_together<Real, Dim>(world, pairs_, least);
     struck_.clear();
     for (const std::uint32_t k : members_) {
       const std::uint32_t number = flights.plans[k].number;

@@ -577,7 +577,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
     Status status = resolver.strike([&](std::size_t k, const Real& impulse) {
       if (impulse > Real(0)) note_impact(instant, points[k], impulse);
     });
-    if (!status) return status;
+    if (!status) return impulses_not_found(now_, bodies, status.message);
     for (std::size_t k = 0; k < instant.moving(); ++k) bodies_[bodies[k]] = instant.bodies()[k];
     choose_motors(instant);
     if (status = resolver.choose_lasting(now_); !status) return status;
