@@ -125,9 +125,11 @@ class StoppingTimes {
                  std::min(way(part), part.reach));
   }
   void find_first_contact(const RigidPart<Real, Dim>& part, std::span<const PartPair> near) {
-    if (near.empty() && world_.meshes().empty()) return;
+    if (near.empty() && world_.meshes().empty() && world_.walls().empty()) return;
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     const MovingBody<Real, Dim> moving = motion_of(part, body, step_);
+    for (std::uint32_t k = 0; k < world_.walls().size(); ++k)
+      if (!has_contact(part, k)) stop(part.body, time_at_wall(moving, k, part));
     for (const PartPair& pair : near) {
       const RigidPart<Real, Dim>& other = pairs_.parts()[pair.b];
       if (!world_.collide(part.body, other.body)) continue;
@@ -201,6 +203,16 @@ class StoppingTimes {
       then.v = world_.velocity[i], then.spin = world_.spin[i];
     return then;
   }
+  /// When a part first touches a wall; the end of the step where it does not, or has been in it from the beginning.
+  [[nodiscard]] Real time_at_wall(const MovingBody<Real, Dim>& moving, std::uint32_t number,
+                                  const RigidPart<Real, Dim>& part) const {
+    const Wall<Real, Dim> wall = facing(world_.walls()[number], bodies_[part.body].x_before);
+    const Convex<Real, Dim> point = {.core = {.corners = {{}}}};
+    const MovingBody<Real, Dim> of_wall = {.shape = &point, .position = wall.normal * wall.offset};
+    const MovingPair<Real, Dim> pair{moving, of_wall};
+    const Real time = pair.time_of_overlap(-wall.normal, Real(0), part.inner_radius / 100, Real(0), step_);
+    return time > Real(0) ? time : step_;
+  }
   [[nodiscard]] Real time_in_wall(const PartContact<Real, Dim>& found, const RigidPart<Real, Dim>& part) const {
     const auto& first = found.contact.points[0];
     const Convex<Real, Dim> point = {.core = {.corners = {{}}}};
@@ -240,7 +252,14 @@ class StoppingTimes {
   [[nodiscard]] bool has_contact(const RigidPart<Real, Dim>& a, const RigidPart<Real, Dim>& b) const {
     const auto* const first = pairs_.parts().data();
     const auto i = static_cast<std::uint32_t>(&a - first), j = static_cast<std::uint32_t>(&b - first);
-    const PartPair pair{std::min(i, j), std::max(i, j)};
+    return has_contact(PartPair{std::min(i, j), std::max(i, j)});
+  }
+  [[nodiscard]] bool has_contact(const RigidPart<Real, Dim>& part, std::uint32_t wall) const {
+    const auto parts = pairs_.parts();
+    return has_contact(
+        PartPair{static_cast<std::uint32_t>(&part - parts.data()), static_cast<std::uint32_t>(parts.size()) + wall});
+  }
+  [[nodiscard]] bool has_contact(const PartPair& pair) const {
     const auto at = std::ranges::lower_bound(contacts_, pair, {}, &PartContact<Real, Dim>::parts);
     return at != contacts_.end() && at->parts == pair && at->contact.size > 0;
   }

@@ -101,6 +101,35 @@ struct CommonPoint {
   Real separation{};  // of the cores
   std::uint32_t feature = 0;
 };
+/// How much better a point is placed than others that are as deep: each length of separation counts for this many
+/// across the normal. Of what is not as near, little more may touch within the step than what is next to the deepest
+/// point.
+template <class Real>
+inline constexpr Real weight_of_depth = Real(2);
+
+/// Moves those to the front that no other point shadows, and returns how many they are. From what is in the shadow one
+/// goes down to another point more steeply than at 45 degrees, as from the upper corners of a box to the lower ones:
+/// before it bears anything, the bodies would have to turn that far against each other.
+template <class Real, int Dim>
+[[nodiscard]] std::size_t move_shadowed_back(CommonPoint<Real, Dim>* points, std::size_t size,
+                                             const Vector<Real, Dim>& normal) {
+  using Point = CommonPoint<Real, Dim>;
+  std::sort(points, points + size, [](const Point& p, const Point& q) {
+    return p.separation != q.separation ? p.separation < q.separation : p.feature < q.feature;
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool is_shadowed = std::any_of(points, points + kept, [&](const Point& lower) {
+      Vector<Real, Dim> across = points[i].on_a - lower.on_a;
+      across -= normal * dot(across, normal);
+      const Real fall = points[i].separation - lower.separation;
+      return fall > Real(0) && fall * fall > squared(across);
+    });
+    if (!is_shadowed) std::swap(points[kept++], points[i]);
+  }
+  return kept;
+}
+
 /// A list of such points.
 template <class Real, int Dim>
 class CommonPoints {
@@ -118,15 +147,23 @@ class CommonPoints {
     points_.resize(static_cast<std::size_t>(kept - points_.data()));
   }
   /// Keeps so many: the deepest one, the one farthest from it, and in space the two that span the largest areas on
-  /// either side of their line.
+  /// either side of their line; of those that are less deep, only what is much farther away.
   void reduce(const Vector<Real, Dim>& normal, std::size_t most) {
     if (points_.size() <= most) return;
+    points_.resize(move_shadowed_back(points_.data(), points_.size(), normal));
+    if (points_.size() <= most) return;
     choose(0, [&](const Point& p) { return -p.separation; });
-    choose(1, [&](const Point& p) { return squared(p.on_a - points_[0].on_a); });
+    const auto from_deepest = [&](const Point& p) {
+      const Vector<Real, Dim> way = p.on_a - points_[0].on_a;
+      return way - normal * dot(way, normal);
+    };
+    const auto cost = [&](const Point& p) { return weight_of_depth<Real> * (p.separation - points_[0].separation); };
+    choose(1, [&](const Point& p) { return length(from_deepest(p)) - cost(p); });
     if constexpr (Dim == 3) {
-      const Vector<Real, 3> across = moment(normal, points_[1].on_a - points_[0].on_a);
-      choose(2, [&](const Point& p) { return dot(p.on_a - points_[0].on_a, across); });
-      choose(3, [&](const Point& p) { return -dot(p.on_a - points_[0].on_a, across); });
+      Vector<Real, 3> across = moment(normal, from_deepest(points_[1]));
+      if (const Real size = length(across); size > Real(0)) across *= 1 / size;
+      choose(2, [&](const Point& p) { return dot(from_deepest(p), across) - cost(p); });
+      choose(3, [&](const Point& p) { return -dot(from_deepest(p), across) - cost(p); });
     }
     points_.resize(most);
   }
