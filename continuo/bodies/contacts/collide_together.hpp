@@ -74,17 +74,22 @@ class CollisionRound {
   static constexpr Real rounding = std::numeric_limits<Real>::epsilon();
 
   [[nodiscard]] bool is_shared(std::uint32_t body) const { return std::ranges::equal_range(bodies_, body).size() > 1; }
+  /// The bodies of shared_, also those that no impulse moves, and their contacts.
   template <class MoverOf>
   void list(MoverOf&& mover) {
+    bodies_.clear(), sweeps_.clear();
+    for (const One* one : shared_)
+      for (const std::uint32_t body : {one->a, one->b})
+        if (body != One::wall) bodies_.push_back(body);
+    std::ranges::sort(bodies_);
     bodies_.erase(std::ranges::unique(bodies_).begin(), bodies_.end());
-    sweeps_.clear();
     for (const std::uint32_t body : bodies_) {
       const Mover<Real, Dim> of = mover(body);
       sweeps_.add({of.velocity, of.spin, of.inverse_mass, of.radius * of.inverse_inertia, of.radius});
     }
     const auto place_of = [this](std::uint32_t body) {
-      const auto at = std::ranges::lower_bound(bodies_, body);
-      return at == bodies_.end() || *at != body ? 0u : static_cast<std::uint32_t>(at - bodies_.begin()) + 1;
+      if (body == One::wall) return 0u;
+      return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies_, body) - bodies_.begin()) + 1;
     };
     for (const One* one : shared_) {
       const Real approach = -dot(V(mover(one->b).velocity - mover(one->a).velocity), one->normal);
@@ -126,12 +131,12 @@ class CollisionRound {
       auto& row = sweeps_.row(k);
       row.friction = shared_[k]->material.friction, row.has_known_press = true;
     }
-    return !(sweeps_.sweep(4 * rounding * fastest, patience * most_sweeps) > std::sqrt(rounding) * fastest);
+    return !(sweeps_.sweep(rounding / 4 * fastest, patience * most_sweeps) > std::sqrt(rounding) * fastest);
   }
 
   using Moving = typename ProjectedGaussSeidel<Real, Dim>::Moving;
   ProjectedGaussSeidel<Real, Dim> sweeps_;
-  std::vector<std::uint32_t> bodies_;  // those that move: at first once for each collision
+  std::vector<std::uint32_t> bodies_;  // at first those that move, once for each collision
   std::vector<One*> shared_;           // those that share bodies
   V no_velocity_{};
   Spin<Real, Dim> no_spin_{};
