@@ -18,14 +18,15 @@ class IslandSolver {
  public:
   using Bodies = std::span<RigidBody<Real, Dim>>;
 
-  /// Takes an island at the beginning of a step.
+  /// Takes an island at the beginning of a step. The rows of joints change in it, and those of contacts where they
+  /// turn.
   void begin(const RigidIslands& islands, std::size_t island, const Constraints<Real, Dim>& all,
-             std::span<const RigidBody<Real, Dim>> bodies) {
+             std::span<const RigidBody<Real, Dim>> bodies, bool contacts_turn) {
     members_ = islands.bodies(island), blocks_ = islands.blocks(island);
     const std::size_t bodies_before = analysed_bodies_, most_before = most_updates_;
     pairs_before_.swap(pairs_);
     pairs_.clear();
-    has_joints_ = false;
+    do_rows_change_ = contacts_turn;
     std::size_t rows = 0;
     for (const std::uint32_t k : blocks_) {
       const RowBlock& block = all.blocks[k];
@@ -33,7 +34,7 @@ class IslandSolver {
         return bodies[body].is_fixed() ? DirectSolver<Dim>::fixed : islands.place(body);
       };
       pairs_.push_back({place(block.a), place(block.b)});
-      has_joints_ |= block.points == 0;
+      do_rows_change_ |= block.points == 0;
       rows += block.rows;
     }
     // A product of blocks costs as much as some ten rows of a sweep, of which a step has two for each substep.
@@ -51,7 +52,7 @@ class IslandSolver {
   void push(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
       direct_.template load_bodies<Real>(members_, bodies, RowPass::push);
-      if (has_joints_ || !is_loaded_) {
+      if (do_rows_change_ || !is_loaded_) {
         direct_.template load_rows<Real>(blocks_, all, bodies);
       } else {
         direct_.template load_biases<Real>(blocks_, all);
@@ -68,7 +69,7 @@ class IslandSolver {
   /// Removes the velocity that correcting positions gave.
   void relax(Constraints<Real, Dim>& all, Bodies bodies) {
     if (!is_direct_) return sweep_all(RowPass::relax, all, bodies);
-    if (has_joints_) {
+    if (do_rows_change_) {
       direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
       direct_.template load_rows<Real>(blocks_, all, bodies);
       direct_.remove_impulses();
@@ -154,7 +155,7 @@ class IslandSolver {
   std::vector<typename DirectSolver<Dim>::Pair> pairs_, pairs_before_;
   std::size_t analysed_bodies_ = 0, most_updates_ = 0;
   bool is_thin_ = false;  // whether the graph can be factorized
-  bool is_direct_ = false, has_joints_ = false, is_loaded_ = false;
+  bool is_direct_ = false, do_rows_change_ = false, is_loaded_ = false;
   int sweeps_ = 1;
 };
 

@@ -98,7 +98,9 @@ class MeshPassage {
         return pair.time_of_overlap(into, start + depth_ / 4, depth_ / 100, Real(0), until);
     const V normal = contact->normal == V{} ? into : contact->normal;
     if (dot(normal, into) < Real(-0.1)) return until;
-    const Real time_of_entry = pair.time_of_overlap(normal, depth_, depth_ / 100, Real(0), until);
+    // What is as deep from the beginning along another direction than the facet's has to move on, too.
+    const Real most = contact->time > Real(0) ? depth_ : std::max(depth_, pair.overlap(normal, Real(0)) + depth_ / 4);
+    const Real time_of_entry = pair.time_of_overlap(normal, most, depth_ / 100, Real(0), until);
     if (!(time_of_entry < until)) return until;
     return contact->time > Real(0) ? contact->time : time_of_entry;
   }

@@ -178,6 +178,34 @@ template <class Real, int Dim>
   return block;
 }
 
+/// The arm of a point of a contact after the turn of its body since the step began: the core turns, and what is round
+/// about it reaches farthest `outwards` as before.
+template <class Real, int Dim>
+[[nodiscard]] Vector<Real, Dim> turned_arm(const Vector<Real, Dim>& local, const Real& rounding,
+                                           const Vector<Real, Dim>& outwards, const RigidBody<Real, Dim>& body) {
+  if (rounding == Real(0)) return body.axes * local;
+  const Pose<Real, Dim> before{{}, rotation(body.orientation_before)};
+  return body.axes * Vector<Real, Dim>(local - before.local_direction(outwards * rounding)) + outwards * rounding;
+}
+/// Turns the levers of the rows of a contact along with its bodies. With those of the beginning of the step, a body
+/// that turns far in it would sink in where it touches by then, and gain the energy with which it is pushed out.
+template <class Real, int Dim>
+void turn_levers(const RigidContact<Real, Dim>& contact, std::span<ConstraintRow<Real, Dim>> rows,
+                 const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+  for (std::size_t i = 0; i < contact.size; ++i) {
+    const auto& point = contact.points[i];
+    const Vector<Real, Dim> arm_a = turned_arm(point.local_a, contact.rounding_a, contact.normal, a);
+    const Vector<Real, Dim> arm_b =
+        turned_arm(point.local_b, contact.rounding_b, Vector<Real, Dim>(-contact.normal), b);
+    const auto turn = [&](ConstraintRow<Real, Dim>& row) {
+      row.lever_a = moment(arm_a, row.direction), row.lever_b = moment(arm_b, row.direction);
+      set_mass(row, a, b);
+    };
+    turn(rows[i]);
+    for (std::size_t k = 0; k < Dim - 1; ++k) turn(rows[contact.size + i * (Dim - 1) + k]);
+  }
+}
+
 /// Sets the velocities that the rows of a contact ask for, from where the bodies are now.
 template <class Real, int Dim>
 void aim(const RigidContact<Real, Dim>& contact, std::span<ConstraintRow<Real, Dim>> rows,

@@ -203,6 +203,7 @@ class RigidStepper {
     rules_ = std::move(now);
   }
   void load_bodies() {
+    turns_far_.resize(world_.size());
     team_.for_each(0, world_.size(), 64, [this](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) load(i);
     });
@@ -221,7 +222,9 @@ class RigidStepper {
     body.is_ball = world_.solid(i) == nullptr || is_isotropic(body.inertia);
     body.inverse_inertia = is_still ? Inertia<Real, Dim>{} : inverse(body.inertia);
     body.update_axes();
+    turns_far_[i] = !body.is_fixed() && squared(body.spin) > square(far_turn / options_.step) ? 1 : 0;
   }
+  [[nodiscard]] static Real square(const Real& value) { return value * value; }
 
   [[nodiscard]] Status find_contacts() {
     const auto collide = [this](std::uint32_t i, std::uint32_t j) {
@@ -307,7 +310,10 @@ class RigidStepper {
       // That of a heap is too thick anyway: to find that out in each step takes as long as a sweep.
       const bool is_heap = contacts > most_contacts_of_thick_islands &&
                            4 * static_cast<std::size_t>(contacts) > 5 * islands_.bodies(k).size();
-      if (is_cheap || (has_joints && !is_heap)) solvers_[k].begin(islands_, k, rows_, bodies_);
+      if (is_cheap || (has_joints && !is_heap)) {
+        const bool contacts_turn = std::ranges::any_of(islands_.bodies(k), [&](auto i) { return turns_far_[i] != 0; });
+        solvers_[k].begin(islands_, k, rows_, bodies_, contacts_turn);
+      }
       const auto in_lanes =
           contacts + std::ranges::count_if(joints, [this](std::uint32_t block) { return may_be_in_lanes(block); });
       const bool is_large = static_cast<std::size_t>(in_lanes) > most_blocks_of_small_islands;
@@ -355,8 +361,8 @@ class RigidStepper {
     const auto rest = std::ranges::unique(joined_);
     joined_.erase(rest.begin(), rest.end());
   }
-  /// Rows of contacts that are not swept come first: they stay the same during a step, those of joints follow the
-  /// bodies.
+  /// Rows of contacts that are not swept come first: they stay the same during a step, unless bodies turn far in it;
+  /// those of joints follow the bodies.
   void gather_rows() {
     rows_.rows.clear();
     scalar_.clear();
@@ -371,6 +377,11 @@ class RigidStepper {
       rows_.blocks[k] = add_rows(found.contact, found.a, found.b, bodies_[found.a], bodies_[found.b], rows_.rows);
     }
     contact_rows_ = rows_.rows.size();
+    turning_.clear();
+    std::ranges::copy_if(scalar_, std::back_inserter(turning_), [this](std::uint32_t k) {
+      const auto turns = [this](std::uint32_t i) { return i < turns_far_.size() && turns_far_[i] != 0; };
+      return turns(rows_.blocks[k].a) || turns(rows_.blocks[k].b);
+    });
     gather_joints();
   }
   [[nodiscard]] bool pushes(const ContactHead& head, std::uint32_t contact) const {
@@ -637,7 +648,7 @@ class RigidStepper {
       return;
     }
     if (is_alone_[i] != 0) body.x -= acceleration_[i] * (h * h / 2);  // its parabola, exactly
-    body.axes = rotation(body.orientation);
+    turns_far_[i] != 0 ? body.update_axes() : void(body.axes = rotation(body.orientation));
   }
   /// Constraints push, and bodies move.
   void push_swept(const Real& h) {
@@ -759,6 +770,10 @@ class RigidStepper {
     return torque;
   }
   void aim_contacts() {
+    for (const std::uint32_t k : turning_) {
+      const auto& found = contacts_.all()[active_[k]];
+      turn_levers(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b]);
+    }
     for (const std::uint32_t k : scalar_) {
       const auto& found = contacts_.all()[active_[k]];
       aim(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b], hardness_[k]);
@@ -1031,6 +1046,7 @@ class RigidStepper {
   }
 
   static constexpr Real gain_of_turning_joints = Real(1.05);  // in a substep that turns them by a fifth of a radian
+  static constexpr Real far_turn = Real(0.1);                 // of a body in a step, in radians
   static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 3;
   static constexpr std::ptrdiff_t most_contacts_of_thick_islands = 500;
   static constexpr std::size_t most_blocks_of_small_islands = 100;
@@ -1051,6 +1067,8 @@ class RigidStepper {
   std::vector<std::uint32_t> easy_alone_;                   // those of the easy ones without contacts and joints
   std::vector<std::uint32_t> apart_from_lanes_, not_easy_;  // all bodies, and all that move, but those
   std::vector<std::uint32_t> scalar_;                       // the blocks of all other contacts
+  std::vector<std::uint32_t> turning_;                      // of these, of those of bodies that turn far in a step
+  std::vector<std::uint8_t> turns_far_;                     // bodies that do, when the step begins
   std::vector<RigidBody<Real, Dim>> bodies_;
   std::vector<std::uint8_t> moves_;  // whether each of them does: what goes through all contacts asks for no more
   std::vector<std::uint8_t> moves_before_;  // when contacts were gathered; empty where that is to be done again
