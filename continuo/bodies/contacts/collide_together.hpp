@@ -131,7 +131,8 @@ class CollisionRound {
       auto& row = sweeps_.row(k);
       row.friction = shared_[k]->material.friction, row.has_known_press = true;
     }
-    return !(sweeps_.sweep(rounding / 4 * fastest, patience * most_sweeps) > std::sqrt(rounding) * fastest);
+    const Real least = rounding * fastest, most = std::sqrt(rounding) * fastest;
+    return !(sweeps_.sweep(least, most_sweeps) > most) || !(sweeps_.sweep(least, patience * most_sweeps) > most);
   }
 
   using Moving = typename ProjectedGaussSeidel<Real, Dim>::Moving;
