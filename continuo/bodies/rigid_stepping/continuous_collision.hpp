@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/rigid_stepping/mesh_passage.hpp>
@@ -48,6 +49,9 @@ template <class Real, int Dim>
   return moving;
 }
 
+/// The numbers of two bodies, the lower one first.
+using BodyPair = std::pair<std::uint32_t, std::uint32_t>;
+
 /// When a body stops, and at which other one: no body is a wall, a mesh, or one that need not stop.
 template <class Real>
 struct Stop {
@@ -60,12 +64,14 @@ struct Stop {
 template <class Real, int Dim>
 class StoppingTimes {
  public:
+  /// Bodies of the pairs `joined`, which are sorted, pass through each other.
   StoppingTimes(ThreadTeam& team, const World<Real, Dim>& world, RigidPairs<Real, Dim>& pairs,
-                std::span<const PartContact<Real, Dim>> contacts, const Real& step,
+                std::span<const PartContact<Real, Dim>> contacts, std::span<const BodyPair> joined, const Real& step,
                 std::span<const RigidBody<Real, Dim>> bodies)
       : world_(world),
         pairs_(pairs),
         contacts_(contacts),
+        joined_(joined),
         step_(step),
         bodies_(bodies),
         stops_(world.size(), {step}),
@@ -118,6 +124,9 @@ class StoppingTimes {
   }
 
  private:
+  [[nodiscard]] bool collide(std::uint32_t i, std::uint32_t j) const {
+    return world_.collide(i, j) && !std::ranges::binary_search(joined_, BodyPair(std::min(i, j), std::max(i, j)));
+  }
   /// What a part passes in the step, with room for its turn.
   [[nodiscard]] Bounds<Real, Dim> swept_by(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
@@ -132,7 +141,7 @@ class StoppingTimes {
       if (!has_contact(part, k)) stop(part.body, time_at_wall(moving, k, part));
     for (const PartPair& pair : near) {
       const RigidPart<Real, Dim>& other = pairs_.parts()[pair.b];
-      if (!world_.collide(part.body, other.body)) continue;
+      if (!collide(part.body, other.body)) continue;
       if (world_.traits(other.body).is_sensor || has_contact(part, other)) continue;
       const auto contact = first_contact(moving, motion_of(other, bodies_[other.body], step_), stops_[part.body].time,
                                          part.inner_radius / 100);
@@ -281,6 +290,7 @@ class StoppingTimes {
   const World<Real, Dim>& world_;
   const RigidPairs<Real, Dim>& pairs_;
   std::span<const PartContact<Real, Dim>> contacts_;
+  std::span<const BodyPair> joined_;
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
   std::vector<Stop<Real>> stops_;
@@ -317,9 +327,9 @@ void carry_along(RigidBody<Real, Dim>& body, const RigidBody<Real, Dim>& driven,
 /// Stops fast bodies. Returns how many. `bodies` have the world's bodies first.
 template <class Real, int Dim>
 std::size_t stop_fast_bodies(ThreadTeam& team, const World<Real, Dim>& world, RigidPairs<Real, Dim>& pairs,
-                             std::span<const PartContact<Real, Dim>> contacts, const Real& step,
-                             std::span<RigidBody<Real, Dim>> bodies) {
-  StoppingTimes<Real, Dim> times(team, world, pairs, contacts, step, bodies);
+                             std::span<const PartContact<Real, Dim>> contacts, std::span<const BodyPair> joined,
+                             const Real& step, std::span<RigidBody<Real, Dim>> bodies) {
+  StoppingTimes<Real, Dim> times(team, world, pairs, contacts, joined, step, bodies);
   if (!times.may_stop()) return 0;
   times.find_first_contacts();
   for (const PartContact<Real, Dim>& found : contacts)

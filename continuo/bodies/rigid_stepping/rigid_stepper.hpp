@@ -932,7 +932,7 @@ class RigidStepper {
   }
   void stop_fast_bodies() {
     statistics.impacts += continuo::stop_fast_bodies<Real, Dim>(team_, world_, pairs_, contacts_.without_meshes(),
-                                                                options_.step, bodies_);
+                                                                apart_, options_.step, bodies_);
   }
 
   void store() {
