@@ -157,7 +157,7 @@ class DirectSolver {
 
  private:
   static constexpr double stiffness = 1e6;  // of rigid rows, per mass; rounding errors take 1e-16 times that
-  static constexpr int most_updates_of_limits = 2, most_iterations = 25;
+  static constexpr int most_updates_of_limits = 5, most_iterations = 60;
   enum class RowState : std::uint8_t { open, acts, slides };
   struct Row {
     Velocity on_a{}, on_b{};  // the row of J
@@ -370,13 +370,25 @@ class DirectSolver {
     const bool has_turned = rows[0].state == RowState::slides && along < 0;
     const bool slides = square > most * most && !has_turned;
     limit_length(wanted, most);
-    bool has_changed = false;
+    const double part = slides ? most / std::sqrt(square) : 1;
+    bool has_changed = Count > 1 && slides && most > 0 && has_another_slope<Count>(rows, wanted, part);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       rows[k].impulse = wanted[k];
-      rows[k].part = slides ? most / std::sqrt(square) : 1;
+      rows[k].part = part;
       has_changed |= set(rows[k], most == 0 ? RowState::open : slides ? RowState::slides : RowState::acts);
     }
     return has_changed;
+  }
+  /// Whether the stiffness across rows that slide differs from that of the last state by more than a hundredth: with an
+  /// old one the direction of sliding would creep to where it belongs.
+  template <std::size_t Count>
+  [[nodiscard]] static bool has_another_slope(const Row* rows, const std::array<double, Count>& impulses, double part) {
+    double square = 0, change = 0;
+    for (std::size_t k = 0; k < Count; ++k) {
+      const double difference = impulses[k] - rows[k].impulse;
+      square += impulses[k] * impulses[k], change += difference * difference;
+    }
+    return std::abs(part - rows->part) > 0.01 * part || change > 1e-4 * square;
   }
   /// The states that the impulses mean with which the iterations begin.
   bool guess_states() {
