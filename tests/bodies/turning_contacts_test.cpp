@@ -54,10 +54,10 @@ TEST(TurningContacts, WhatSpinsOnAFloorGainsNoEnergy) {
   for (const double spin : {3.0, 10.0, 30.0})
     for (unsigned seed = 1; seed <= 8; ++seed) {
       for (const double radius : {0.05, 0.1, 0.3})
-        EXPECT_LT(rise_of_energy(Capsule<double>{0.7, radius}, spin, seed), 0.03)
+        EXPECT_LT(rise_of_energy(Capsule<double>{0.7, radius}, spin, seed), 0.01)
             << "radius " << radius << ", spin " << spin << ", seed " << seed;
-      EXPECT_LT(rise_of_energy(Box<double, 3>{{{0.3, 0.5, 0.9}}}, spin, seed), 0.03) << spin << ", seed " << seed;
-      EXPECT_LT(rise_of_energy(Box<double, 3>{{{0.3, 0.5, 0.9}}, 0.1}, spin, seed), 0.03) << spin << ", seed " << seed;
+      EXPECT_LT(rise_of_energy(Box<double, 3>{{{0.3, 0.5, 0.9}}}, spin, seed), 0.01) << spin << ", seed " << seed;
+      EXPECT_LT(rise_of_energy(Box<double, 3>{{{0.3, 0.5, 0.9}}, 0.1}, spin, seed), 0.01) << spin << ", seed " << seed;
     }
 }
 
