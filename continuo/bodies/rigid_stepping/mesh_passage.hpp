@@ -91,13 +91,18 @@ class MeshPassage {
     const MovingBody<Real, Dim> still{.shape = &facet_shape_};
     const auto contact = first_contact(moving_, still, until, tolerance_);
     if (!contact) return until;
-    // The solver pushes out what touches already, for which it has to move, and which may be deep behind the plane of
-    // the facet only where that has no points.
-    if (contact->time == Real(0)) return time_of_depth(moving_, still, depth_, until);
+    const MovingPair<Real, Dim> pair{moving_, still};
+    if (contact->time == Real(0))
+      // The solver pushes it out, for which it has to move.
+      if (const Real start = depth_along(into, moving_.at(Real(0)), facet); start > depth_)
+        return pair.time_of_overlap(into, start + depth_ / 4, depth_ / 100, Real(0), until);
     const V normal = contact->normal == V{} ? into : contact->normal;
     if (dot(normal, into) < Real(-0.1)) return until;
-    const MovingPair<Real, Dim> pair{moving_, still};
-    return pair.time_of_overlap(normal, depth_, depth_ / 100, Real(0), until) < until ? contact->time : until;
+    // What is as deep from the beginning along another direction than the facet's has to move on, too.
+    const Real most = contact->time > Real(0) ? depth_ : std::max(depth_, pair.overlap(normal, Real(0)) + depth_ / 4);
+    const Real time_of_entry = pair.time_of_overlap(normal, most, depth_ / 100, Real(0), until);
+    if (!(time_of_entry < until)) return until;
+    return contact->time > Real(0) ? contact->time : time_of_entry;
   }
 
  private:
