@@ -9,10 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "rigid_worlds.hpp"
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/shapes/plane_manifold.hpp>
-
-#include "rigid_worlds.hpp"
 
 namespace continuo::fast_at_walls_test {
 namespace {
