@@ -46,10 +46,10 @@ class Box2dWorld {
                     height + static_cast<float>(i) + 0.5f),
                 1, 1);
   }
-  void add_ball(b2BodyId body, float radius) {
+  void add_ball(b2BodyId body, float radius, bool collides_with_balls = false) {
     b2ShapeDef definition = shape(1);
     definition.filter.categoryBits = 2;
-    definition.filter.maskBits = ~std::uint64_t{2};
+    if (!collides_with_balls) definition.filter.maskBits = ~std::uint64_t{2};
     const b2Circle circle{{0, 0}, radius};
     b2CreateCircleShape(body, &definition, &circle);
   }
@@ -73,6 +73,16 @@ class Box2dWorld {
                              -static_cast<double>(contacts[static_cast<std::size_t>(k)].manifold.points[p].separation));
     }
     return deepest;
+  }
+  [[nodiscard]] double mean_square_speed() const {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const b2BodyId body : bodies_) {
+      if (b2Body_GetType(body) == b2_staticBody) continue;
+      const b2Vec2 v = b2Body_GetLinearVelocity(body);
+      sum += static_cast<double>(v.x * v.x + v.y * v.y), ++count;
+    }
+    return sum / static_cast<double>(count);
   }
 
  private:
@@ -122,6 +132,11 @@ void make_joint_grid(Box2dWorld& world) {
       bodies.push_back(body);
     }
 }
+void make_heap_of_discs(Box2dWorld& world) {
+  world.add_box(world.add(50, -1, true), 104, 2);
+  for (const float x : {-1.0f, 101.0f}) world.add_box(world.add(x, 100, true), 2, 200);
+  for_each_place_of_discs([&](float x, float y) { world.add_ball(world.add(x, y), 0.5f, true); });
+}
 
 }  // namespace
 }  // namespace continuo::bench
@@ -134,4 +149,5 @@ int main(int count, char** arguments) {
   compare<2, Box2dWorld>("many_pyramids", many_pyramids<2>(20, 20), make_many_pyramids, 200, threads);
   compare<2, Box2dWorld>("tumbler", tumbler(45), make_tumbler, 750, threads);
   compare<2, Box2dWorld>("joint_grid", joint_grid<2>(100), make_joint_grid, 500, threads);
+  compare<2, Box2dWorld>("heap of 10,000 discs", heap_of_discs(), make_heap_of_discs, 600, threads);
 }

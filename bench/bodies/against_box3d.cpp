@@ -73,6 +73,16 @@ class Box3dWorld {
     }
     return deepest;
   }
+  [[nodiscard]] double mean_square_speed() const {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const b3BodyId body : bodies_) {
+      if (b3Body_GetType(body) == b3_staticBody) continue;
+      const b3Vec3 v = b3Body_GetLinearVelocity(body);
+      sum += static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z), ++count;
+    }
+    return sum / static_cast<double>(count);
+  }
 
  private:
   [[nodiscard]] static b3ShapeDef shape() {

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <ctime>
@@ -23,13 +24,21 @@ namespace continuo::bench {
 inline void print_head(const char* peer, int threads) {
   std::printf(
       "%d threads; ms a step: of %s where one thread moves it, that of the processor, else what passes; in steps of "
-      "1/60 "
-      "s, 4 substeps\n| Scene | Continuo | %s | Ratio | Overlap | of %s |\n|---|---|---|---|---|---|\n",
-      threads, "both", peer, peer);
+      "1/60 s\n| Scene | Continuo | %s | Ratio | Overlap | of %s | Speed at the end | of %s "
+      "|\n|---|---|---|---|---|---|---|---|\n",
+      threads, "both", peer, peer, peer);
 }
 
-/// Moves a world and what `make` makes of the peer's for so many steps, in turn, and prints their times and the deepest
-/// overlap at the end of each tenth.
+/// The mean of all squares.
+template <int Dim>
+[[nodiscard]] double mean_square_speed(const World<float, Dim>& world) {
+  double sum = 0;
+  for (const Vector<float, Dim>& v : world.velocity) sum += static_cast<double>(squared(v));
+  return sum / static_cast<double>(world.size());
+}
+
+/// Moves a world and what `make` makes of the peer's for so many steps, in turn, and prints their times, the deepest
+/// overlap at the end of each fiftieth part, and the root of the mean square of speeds at the end.
 template <int Dim, class Peer, class Make>
 void compare(const char* name, World<float, Dim> world, Make&& make, int steps, int threads) {
   FastMotion<float, Dim> motion(world, {.threads = threads});
@@ -50,8 +59,9 @@ void compare(const char* name, World<float, Dim> world, Make&& make, int steps, 
     overlap = std::max(overlap, static_cast<double>(motion.deepest_overlap()));
     peers_overlap = std::max(peers_overlap, peer.overlap());
   }
-  std::printf("| %s | %.3f | %.3f | %.2f | %.4f | %.4f |\n", name, 1e3 * ours / (steps - 1), 1e3 * theirs / (steps - 1),
-              ours / theirs, overlap, peers_overlap);
+  std::printf("| %s | %.3f | %.3f | %.3f | %.4f | %.4f | %.4f | %.4f |\n", name, 1e3 * ours / (steps - 1),
+              1e3 * theirs / (steps - 1), ours / theirs, overlap, peers_overlap, std::sqrt(mean_square_speed(world)),
+              std::sqrt(peer.mean_square_speed()));
   std::fflush(stdout);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include <continuo/bodies/fast_motion.hpp>
@@ -134,6 +135,23 @@ template <int Dim>
       if (k > 0) join(bodies[bodies.size() - static_cast<std::size_t>(side)], x - 0.5f, height);
       bodies.push_back(*body);
     }
+  return world;
+}
+/// Calls act(x, height) for each of 10,000 discs of radius 1/2 that fall into a box that is 100 wide, 90 in a row.
+template <class Act>
+void for_each_place_of_discs(Act&& act) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<float> jitter(-0.02f, 0.02f);
+  for (int k = 0; k < 10000; ++k)
+    act((static_cast<float>(k % 90) + 0.5f) * 100 / 90 + jitter(engine), 1 + 1.1f * static_cast<float>(k / 90));
+}
+[[nodiscard]] inline World<float, 2> heap_of_discs() {
+  World<float, 2> world = world_with_gravity<2>();
+  require(world.add_container({}, {{100, 1e4f}}, {.friction = friction}));
+  for_each_place_of_discs([&](float x, float y) {
+    require(
+        world.add({.shape = Sphere<float>{0.5f}, .position = {{x, y}}, .material = {.friction = friction}}).status());
+  });
   return world;
 }
 
