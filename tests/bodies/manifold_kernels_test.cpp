@@ -66,10 +66,12 @@ Scene<Real, Dim> random_scene(unsigned seed, std::size_t bodies, std::size_t con
     auto& contact = found.contact;
     contact.normal = numbers.vector<Real, Dim>(1);
     contact.normal *= 1 / length(contact.normal);
+    contact.normal_in_a = contact.normal, contact.held_axes = identity_matrix<Real, Dim>();
+    contact.found_at.centre = numbers.vector<Real, Dim>(1);
     contact.friction = static_cast<Real>(numbers.between<float>(0, 1));  // which rows have in single precision
     contact.size = 1 + numbers.below(contact.points.size());
     for (auto& point : contact.all()) {
-      point.arm_a = numbers.vector<Real, Dim>(1), point.arm_b = numbers.vector<Real, Dim>(1);
+      point.arm_a = numbers.vector<Real, Dim>(1), point.arm_b = point.arm_a - contact.found_at.centre;
       point.local_a = point.arm_a, point.local_b = point.arm_b;
       point.separation = numbers.between<Real>(-0.1, 0.02);
       point.impulse = numbers.between<Real>(0, 1);

@@ -97,7 +97,7 @@ class ManifoldSolver {
     for_each_lane(which, [&](std::size_t batch, std::size_t lane, std::uint32_t k) {
       if (lane == 0) prefetch_contacts(batch + 1, contacts, which);
       auto& contact = contacts[k].contact;
-      const auto across = directions_across(contact.normal);
+      const auto across = directions_across(HeldFrame(contact).normal);
       for (std::size_t p = 0; p < contact.size; ++p) {
         auto& point = contact.points[p];
         point.impulse = *value(batch, lane, row(p, At::impulse));
@@ -210,15 +210,17 @@ class ManifoldSolver {
     const auto put = [&](std::size_t at, const auto& vector) {
       for (std::size_t i = 0; i < vector.size(); ++i) rows[(at + i) * lanes] = vector[i];
     };
-    const auto across = directions_across(contact.normal);
-    put(At::normal, contact.normal);
+    const HeldFrame frame(contact);
+    const auto across = directions_across(frame.normal);
+    put(At::normal, frame.normal);
     if constexpr (Dim == 3) put(At::across, across[0]);
     rows[At::friction * lanes] = contact.friction;
     put(At::inertia_a, inertia_a), put(At::inertia_b, inertia_b);
     rows[At::rounding_a * lanes] = contact.rounding_a, rows[At::rounding_b * lanes] = contact.rounding_b;
     for (std::size_t p = 0; p < contact.size; ++p) {
       const auto& point = contact.points[p];
-      put(row(p, At::arm_a), point.arm_a), put(row(p, At::arm_b), point.arm_b);
+      const V arm_a = frame.arm_a(point);
+      put(row(p, At::arm_a), arm_a), put(row(p, At::arm_b), arm_a + frame.from_b_to_a);
       rows[row(p, At::separation) * lanes] = point.separation;
       least_separation_[batch] = std::min(least_separation_[batch], point.separation);
       rows[row(p, At::mass) * lanes] = Real(1);  // the point exists

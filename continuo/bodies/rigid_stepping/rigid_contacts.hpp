@@ -113,12 +113,13 @@ class RigidContacts {
     archive(size), archive(contact.normal), archive(contact.friction), archive(contact.restitution);
     archive(contact.normal_in_a), archive(contact.margin), archive(contact.found_at.centre);
     for (auto& axis : contact.found_at.axes.columns) archive(axis);
+    for (auto& axis : contact.held_axes.columns) archive(axis);
     if constexpr (Archive::reads) contact.size = size;
     if (contact.size > contact.points.size()) return;
     for (auto& point : contact.all()) {
       archive(point.arm_a), archive(point.arm_b), archive(point.local_a), archive(point.local_b);
       archive(point.separation), archive(point.approach), archive(point.impulse), archive(point.friction);
-      archive(point.separation_when_found);
+      archive(point.separation_when_found), archive(point.local_apart);
       archive(point.greatest_impulse), archive(point.feature);
     }
   }
@@ -333,7 +334,8 @@ class RigidContacts {
       const PlacedPart<Real, Dim>& placed_b = pairs.placed(found.parts.b);
       const Real size = std::min(placed_a.reach, placed_b.reach);
       const bool is_round = part_a.rounding + part_b.rounding > Real(0);
-      if (is_round || !follow(found.contact, margin, size, bodies[a], bodies[b])) {
+      const bool is_a_smaller = placed_a.reach < placed_b.reach;
+      if (is_round || !follow(found.contact, margin, size, is_a_smaller, bodies[a], bodies[b])) {
         const Pose<Real, Dim> b_in_a = relative(pose, placed_b.pose);
         const Manifold<Real, Dim> touching =
             part_a.is_box() && part_b.is_box()
