@@ -60,7 +60,8 @@ template <class Real, int Size>
 /// The length.
 template <class Real, int Size>
 [[nodiscard]] Real length(const Vector<Real, Size>& a) {
-  using std::sqrt;
+  using std::abs, std::sqrt;
+  if constexpr (Size == 1) return abs(a[0]);
   return sqrt(squared(a));
 }
 /// Whether all components are.

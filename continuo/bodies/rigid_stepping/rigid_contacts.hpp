@@ -181,8 +181,10 @@ class RigidContacts {
         if (before) note_head(*before, block);
         continue;
       }
-      const Real margin = margin_of(pair, pairs, step);
-      if (!may_be_near(pair, pairs, margin)) {
+      // Most of those that are not near are apart by both margins, which are known.
+      const bool may_have_any = may_be_near(pair, pairs);
+      const Real margin = may_have_any ? margin_of(pair, pairs, step) : Real(0);
+      if (!may_have_any || !may_be_near(pair, pairs, margin)) {
         if (before) lose(*before);
         continue;
       }
@@ -233,12 +235,18 @@ class RigidContacts {
     if (pair.b >= pairs.parts().size()) return pairs.placed(pair.a).margin;
     return pairs.margin_between(pair, step);
   }
-  /// False where two parts are farther apart than where they have a contact.
+  /// False where two parts are farther apart than where they may have a contact.
+  /// @{
+  [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs) {
+    if (pair.b >= pairs.parts().size()) return true;
+    return !are_apart(pairs.placed(pair.a).bounds, pairs.placed(pair.b).bounds);
+  }
   [[nodiscard]] static bool may_be_near(const PartPair& pair, const RigidPairs<Real, Dim>& pairs, const Real& margin) {
     if (pair.b >= pairs.parts().size()) return true;
     const PlacedPart<Real, Dim>&a = pairs.placed(pair.a), &b = pairs.placed(pair.b);
     return !are_apart(a.bounds, b.bounds, a.margin + b.margin - margin);
   }
+  /// @}
   /// Puts the contacts of before that are still there and the new ones into one list.
   void take_blocks(ThreadTeam& team) {
     std::size_t size = 0;
