@@ -45,9 +45,7 @@ struct Cluster {
     CollisionRound<double, Dim> round;
     return round.collide(
         std::span(contacts),
-        [this](std::uint32_t k) {
-          return Mover<double, Dim>{v[k], spin[k], 0.5, 1 / mass[k], 10 / mass[k]};
-        },
+        [this](std::uint32_t k) { return Mover<double, Dim>{v[k], spin[k], 0.5, 1 / mass[k], 10 / mass[k]}; },
         most_sweeps);
   }
   [[nodiscard]] double parting(const Collision<double, Dim>& one) const {
