@@ -33,7 +33,7 @@ struct RigidContactPoint {
   Vector<Real, Dim> local_a{}, local_b{};  // where it was when it was found, in the frames of the bodies
   Real separation{};                       // when the step began
   Real separation_when_found{};            // where local_a and local_b were the same point
-  Real local_apart{};                      // along the normal, from the centres, when the step began
+  Real local_apart{};                      // how far both were apart along the normal when the step began
   Real approach{};                         // normal velocity then
   Real impulse{};                          // along the normal, of the last substep
   Vector<Real, Dim> friction{};            // impulse across it
@@ -118,7 +118,7 @@ void renew(RigidContact<Real, Dim>& contact, const Manifold<Real, Dim>& manifold
     const Vector<Real, Dim> x = of_a.place(found.position);
     point.arm_a = x - a.x, point.arm_b = x - b.x;
     point.local_a = a.pose().local(x), point.local_b = b.pose().local(x);
-    point.local_apart = dot(contact.normal, point.arm_b - point.arm_a);
+    point.local_apart = Real(0);
     point.separation = point.separation_when_found = found.separation;
     point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
   }
@@ -164,7 +164,7 @@ template <class Real, int Dim>
     const Vector<Real, Dim> arm_a = a.axes * point.local_a, arm_b = b.axes * point.local_b;
     const Vector<Real, Dim> apart = between + (arm_b - arm_a);
     point.arm_a = arm_a + apart * Real(0.5), point.arm_b = arm_b - apart * Real(0.5);
-    point.local_apart = dot(contact.normal, arm_b - arm_a);
+    point.local_apart = dot(contact.normal, (arm_b - point.arm_b) - (arm_a - point.arm_a));
     point.separation = point.separation_when_found + dot(contact.normal, apart);
     point.approach = dot(contact.normal, b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
     point.greatest_impulse = Real(0);
@@ -187,8 +187,10 @@ template <class Real, int Dim>
 template <class Real, int Dim>
 [[nodiscard]] Real separation(const RigidContact<Real, Dim>& contact, const RigidContactPoint<Real, Dim>& point,
                               const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
-  const Vector<Real, Dim> moved = (b.moved - a.moved) + (b.axes * point.local_b - a.axes * point.local_a);
-  return point.separation + (dot(moved, contact.normal) - point.local_apart) +
+  // An arm may be long, as to the centre of a mesh, and is the same until the body turns.
+  const Vector<Real, Dim> shifted =
+      (b.moved - a.moved) + ((b.axes * point.local_b - point.arm_b) - (a.axes * point.local_a - point.arm_a));
+  return point.separation + (dot(shifted, contact.normal) - point.local_apart) +
          turn_of_rounding(contact.rounding_a, contact.normal, a) +
          turn_of_rounding(contact.rounding_b, contact.normal, b);
 }
