@@ -127,7 +127,7 @@ int main(int count, char** arguments) {
   using namespace continuo::bench;
   const int threads = count > 1 ? std::max(1, std::atoi(arguments[1])) : 1;
   print_head("Box3D", threads);
-  compare<3, Box3dWorld>("large_pyramid", large_pyramid<3>(100), make_large_pyramid, 200, threads);
-  compare<3, Box3dWorld>("many_pyramids", many_pyramids<3>(14, 14), make_many_pyramids, 100, threads);
-  compare<3, Box3dWorld>("joint_grid", joint_grid<3>(100), make_joint_grid, 100, threads);
+  compare<3, Box3dWorld>("large_pyramid", large_pyramid<3>(100), make_large_pyramid, 200, {.threads = threads});
+  compare<3, Box3dWorld>("many_pyramids", many_pyramids<3>(14, 14), make_many_pyramids, 100, {.threads = threads});
+  compare<3, Box3dWorld>("joint_grid", joint_grid<3>(100), make_joint_grid, 100, {.threads = threads});
 }

@@ -144,8 +144,8 @@ void make_many_pyramids(JoltWorld& world) {
       world.add_pyramid(10, -0.5f * width + 11.0f * static_cast<float>(column) + 0.5f, 11.0f * static_cast<float>(row));
 }
 void compare_balls(const char* name, const Scene& scene, int threads) {
-  compare<3, JoltWorld>(
-      name, world_of<float>(scene), [&](JoltWorld& world) { make_balls(world, scene); }, 600, threads);
+  compare<3, JoltWorld>(name, world_of<float>(scene), [&](JoltWorld& world) { make_balls(world, scene); }, 600,
+                        {.threads = threads});
 }
 
 }  // namespace
@@ -160,6 +160,6 @@ int main(int count, char** arguments) {
   print_head("Jolt", threads);
   compare_balls("heap of 10,000 balls", heap(10000), threads);
   compare_balls("10 % of the balls 15 times as large", heap_of_two_sizes(10000, 0.1, 15), threads);
-  compare<3, JoltWorld>("large_pyramid", large_pyramid<3>(100), make_large_pyramid, 200, threads);
-  compare<3, JoltWorld>("many_pyramids", many_pyramids<3>(14, 14), make_many_pyramids, 100, threads);
+  compare<3, JoltWorld>("large_pyramid", large_pyramid<3>(100), make_large_pyramid, 200, {.threads = threads});
+  compare<3, JoltWorld>("many_pyramids", many_pyramids<3>(14, 14), make_many_pyramids, 100, {.threads = threads});
 }

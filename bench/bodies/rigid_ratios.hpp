@@ -40,8 +40,9 @@ template <int Dim>
 /// Moves a world and what `make` makes of the peer's for so many steps, in turn, and prints their times, the deepest
 /// overlap at the end of each fiftieth part, and the root of the mean square of speeds at the end.
 template <int Dim, class Peer, class Make>
-void compare(const char* name, World<float, Dim> world, Make&& make, int steps, int threads) {
-  FastMotion<float, Dim> motion(world, {.threads = threads});
+void compare(const char* name, World<float, Dim> world, Make&& make, int steps, FastOptions<float> options) {
+  const int threads = options.threads;
+  FastMotion<float, Dim> motion(world, options);
   Peer peer(threads);
   make(peer);
   const auto now = [&] { return threads == 1 ? processor_seconds() : wall_seconds(); };
