@@ -138,7 +138,7 @@ TEST(FollowedContacts, TurnWithBothBodies) {
     RigidContact<double, 3> contact;
     renew(contact, found, boxes.at_a.pose(), margin, boxes.at_a, boxes.at_b);
     const RigidContact<double, 3> before = contact;
-    const Pose<double, 3> turn{{{1, 2, 3}}, rotation(Orientation<double, 3>{{std::cos(0.02), std::sin(0.02), 0, 0}})};
+    const Pose<double, 3> turn{{{1, 2, 3}}, rotation(Orientation<double, 3>{{std::cos(0.002), std::sin(0.002), 0, 0}})};
     auto a = boxes.at_a, b = boxes.at_b;
     for (RigidBody<double, 3>* body : {&a, &b}) {
       body->x = turn.place(body->x);
@@ -150,7 +150,7 @@ TEST(FollowedContacts, TurnWithBothBodies) {
       EXPECT_NEAR(contact.points[i].separation, before.points[i].separation, 1e-12 * size);
       EXPECT_LT(length(contact.points[i].arm_a - turn.axes * before.points[i].arm_a), 1e-12 * (a.x[0] + size + 10));
     }
-    // By 0.04 radians the frame in which sweeps hold it has not turned; twice that it has to follow.
+    // By 0.004 radians the frame in which sweeps hold it has not turned; twice that it has to follow.
     EXPECT_LT(length(HeldFrame(contact).normal - before.normal), 1e-12);
     for (RigidBody<double, 3>* body : {&a, &b}) {
       body->x = turn.place(body->x);
@@ -159,6 +159,42 @@ TEST(FollowedContacts, TurnWithBothBodies) {
     ASSERT_TRUE(follow(contact, margin, size, boxes.a.reach < boxes.b.reach, a, b));
     EXPECT_LT(length(HeldFrame(contact).normal - contact.normal), 1e-12);
   }
+}
+
+// Two rows of bricks, an island that is swept, on a plate that a motor tilts by 0.02 radians a second. They slip where
+// the tangent of its angle is the friction. The normal may lag by HeldFrame::most_turn, and to slide by 1 mm takes
+// t = cbrt(6 mm / (g w / cos(angle))), in which the plate turns by 0.006.
+TEST(FollowedContacts, SlipOnAPlateThatTilts) {
+  constexpr double friction = 0.5, w = 0.02;
+  World<double, 2> world;
+  world.gravity = {{0, -9.81}};
+  ASSERT_TRUE(world.add({.shape = Box<double, 2>{{{90, 1}}},
+                         .spin = {{w}},
+                         .fixed = true,
+                         .material = {.friction = friction},
+                         .traits = {.is_driven = true}}));
+  const double begin = std::atan(friction) - 0.1;
+  const Pose<double, 2> tilted{{}, rotation(Orientation<double, 2>{{begin}})};
+  world.orientation[0] = {{begin}};
+  const auto add = [&](double x, double height) {
+    ASSERT_TRUE(world.add({.shape = Box<double, 2>{{{1, 1}}},
+                           .position = tilted.place({{x, height}}),
+                           .orientation = {{begin}},
+                           .material = {.friction = friction}}));
+  };
+  for (int i = 0; i < 60; ++i) add(i - 30, 1);
+  for (int i = 0; i < 59; ++i) add(i - 29.5, 2);
+  FastMotion<double, 2> motion(world);
+  const auto along_plate = [&](std::size_t i) {
+    const Pose<double, 2> at{{}, rotation(world.orientation[0])};
+    return at.local(world.position[i])[0];
+  };
+  const double start = along_plate(30);
+  for (int k = 0; k < 600 && std::abs(along_plate(30) - start) < 1e-3; ++k) advance<2>(motion, 1);
+  EXPECT_GT(motion.statistics().colours, 2u);  // it was swept
+  EXPECT_GT(world.orientation[0][0], std::atan(friction) * 0.99);
+  const double lag = HeldFrame<double, 2>::most_turn;
+  EXPECT_LT(world.orientation[0][0], std::atan(friction) + lag + 0.006);
 }
 
 // A wall one box thick, in rows of 50, 49, ..., 1. Rigid boxes stay where they are; soft contacts at 30 Hz let the wall

@@ -67,8 +67,8 @@ struct RigidContact {
 /// reason. The direction of a normal is wrong by no more than the turn that is allowed for.
 template <class Real, int Dim>
 struct HeldFrame {
-  static constexpr Real most_turn = Real(0.05);  // radians
-  Matrix<Real, Dim> axes{};                      // of a
+  static constexpr Real most_turn = Real(0.005);  // radians; with 0.003 the pyramid falls after 15 s
+  Matrix<Real, Dim> axes{};                       // of a
   Vector<Real, Dim> normal{};
   Vector<Real, Dim> from_b_to_a{};  // between the centres
 
