@@ -152,5 +152,5 @@ int main(int count, char** arguments) {
   compare<2, Box2dWorld>("heap of 10,000 discs", heap_of_discs(), make_heap_of_discs, 600, {.threads = threads});
   // Contacts of the same frequency are as deep and as quiet.
   compare<2, Box2dWorld>("discs, both at 30 Hz", heap_of_discs(), make_heap_of_discs, 600,
-                         {.threads = threads, .hertz = 30});
+                         {.hertz = 30, .threads = threads});
 }
