@@ -75,7 +75,6 @@ struct Constraints {
   [[nodiscard]] std::span<ConstraintRow<Real, Dim>> of(const RowBlock& block) {
     return std::span(rows).subspan(block.first, block.rows);
   }
-  void clear() { rows.clear(), blocks.clear(); }
 };
 
 /// Which velocity a solver asks for: push corrects positions as well, relax removes the velocity that this gave.

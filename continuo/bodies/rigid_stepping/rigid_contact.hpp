@@ -63,8 +63,8 @@ struct RigidContact {
 ///
 /// A tall wall of soft contacts buckles as a column does that bears itself: the arms of what leans let it lean further,
 /// and a few sweeps cannot hold against that what they hold otherwise. With arms and normals that do not follow small
-/// turns, it stands: a pyramid of 100 rows fell after five seconds. Box3D keeps the anchors of contacts for the same
-/// reason. The direction of a normal is wrong by no more than the turn that is allowed for.
+/// turns, a pyramid of 100 rows stands that else falls after five seconds. Box3D keeps the anchors of contacts for the
+/// same reason. The direction of a normal is wrong by no more than the turn that is allowed for.
 template <class Real, int Dim>
 struct HeldFrame {
   static constexpr Real most_turn = Real(0.005);  // radians; with 0.003 the pyramid falls after 15 s
