@@ -86,35 +86,74 @@ class ContactColours {
   std::array<std::uint32_t, most + 1> first_{};
 };
 
+/// Batches of contacts of one colour.
+struct BatchRun {
+  std::size_t first = 0, last = 0;  // up to the one before the last
+  bool is_shared = false;           // whether contacts of different batches may share bodies
+};
+
 /// The lanes of registers that coloured contacts are solved in: batches of one colour each, one after the other. Those
-/// of the shared colour have a batch each.
+/// of the shared colour have a batch each. Contacts may be of several groups, whose batches follow each other.
 class LanesOfColours {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  void find(const ContactColours& colours, std::size_t lanes) {
+  /// Takes the colours of contacts for registers of so many lanes, and the group of each contact, which is below
+  /// `groups`.
+  void find(const ContactColours& colours, std::size_t lanes, std::span<const std::uint32_t> group_of,
+            std::size_t groups) {
+    next_.assign(groups * most, 0);
+    const auto next = [&](std::size_t contact, std::size_t colour) -> std::size_t& {
+      return next_[group_of[contact] * most + colour];
+    };
+    for (std::size_t c = 0; c < most; ++c)
+      for (const std::uint32_t k : colours.of(c)) ++next(k, c);
+    runs_.clear(), first_run_.clear();
     std::size_t batches = 0;
-    for (std::size_t c = 0; c < ContactColours::most; ++c) {
-      first_[c] = batches;
-      const std::size_t count = colours.of(c).size();
-      batches += ContactColours::is_shared(c) ? count : (count + lanes - 1) / lanes;
+    for (std::size_t group = 0; group < groups; ++group) {
+      first_run_.push_back(runs_.size());
+      for (std::size_t c = 0; c < most; ++c) {
+        const bool is_shared = ContactColours::is_shared(c);
+        std::size_t& of_colour = next_[group * most + c];
+        if (of_colour == 0) continue;
+        const std::size_t first = batches;
+        batches += is_shared ? of_colour : (of_colour + lanes - 1) / lanes;
+        of_colour = first * lanes;
+        runs_.push_back({first, batches, is_shared});
+      }
     }
-    first_[ContactColours::most] = batches;
+    first_run_.push_back(runs_.size());
     in_lane_.assign(batches * lanes, none);
-    for (std::size_t c = 0; c < ContactColours::most; ++c) {
-      const auto members = colours.of(c);
-      for (std::size_t i = 0; i < members.size(); ++i)
-        in_lane_[first_[c] * lanes + (ContactColours::is_shared(c) ? i * lanes : i)] = members[i];
-    }
+    for (std::size_t c = 0; c < most; ++c)
+      for (const std::uint32_t k : colours.of(c)) {
+        in_lane_[next(k, c)] = k;
+        next(k, c) += ContactColours::is_shared(c) ? lanes : 1;
+      }
   }
-  /// The first batch of a colour; of the number of colours, that of batches.
-  [[nodiscard]] std::size_t first(std::size_t colour) const { return first_[colour]; }
-  [[nodiscard]] std::size_t batches() const { return first_[ContactColours::most]; }
+  /// All contacts are of one group.
+  void find(const ContactColours& colours, std::size_t lanes, std::size_t contacts) {
+    const std::vector<std::uint32_t> group_of(contacts);
+    find(colours, lanes, group_of, 1);
+  }
+  /// The batches of a group, colour by colour.
+  [[nodiscard]] std::span<const BatchRun> runs(std::size_t group) const {
+    return std::span(runs_).subspan(first_run_[group], first_run_[group + 1] - first_run_[group]);
+  }
+  /// All batches of a group, or none.
+  [[nodiscard]] BatchRun batches(std::size_t group) const {
+    const auto all = runs(group);
+    return all.empty() ? BatchRun{} : BatchRun{all.front().first, all.back().last};
+  }
+  [[nodiscard]] std::size_t batches() const { return runs_.empty() ? 0 : runs_.back().last; }
   /// Which contact is in each lane, or none; batch after batch.
   [[nodiscard]] std::span<const std::uint32_t> members() const { return in_lane_; }
 
  private:
-  std::array<std::size_t, ContactColours::most + 1> first_{};
+  static constexpr std::size_t most = ContactColours::most;
+
+  std::vector<BatchRun> runs_;
+  std::vector<std::size_t> first_run_{0, 0};  // of each group
+  std::vector<std::size_t> next_;             // lane of each colour of each group, while contacts are put there
   std::vector<std::uint32_t> in_lane_;
 };
 

@@ -64,9 +64,8 @@ class PointJointSolver {
   [[nodiscard]] bool empty() const { return size_ == 0; }
   void sweep(ManifoldPass pass) {
     if (empty()) return;
-    for (std::size_t c = 0; c < ContactColours::most; ++c)
-      team_.for_each(lanes_.first(c), lanes_.first(c + 1),
-                     ContactColours::is_shared(c) ? lanes_.first(c + 1) - lanes_.first(c) : 8,
+    for (const BatchRun& run : lanes_.runs(0))
+      team_.for_each(run.first, run.last, run.is_shared ? run.last - run.first : 8,
                      [&](std::size_t from, std::size_t to) { kernels_.apply_to_point_joints(task_, pass, from, to); });
   }
   /// Of the last substep.
@@ -107,7 +106,7 @@ class PointJointSolver {
     for (std::size_t k = 0; k < joints.size(); ++k) coloured_[k] = {mover(joints[k].a), mover(joints[k].b), 1};
     const std::size_t lanes = kernels_.lanes;
     const bool are_others = colours_.find(coloured_, bodies.size());
-    if (are_others) lanes_.find(colours_, lanes);
+    if (are_others) lanes_.find(colours_, lanes, joints.size());
     const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {});
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves

@@ -103,6 +103,7 @@ class RigidStepper {
     begin_islands();
     begin_swept();
     const Real h = substep();
+    if (has_groups()) advance_groups();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
     if (!swept_.empty()) manifolds_.store_impulses(contacts_.all(), swept_);
     keep_point_joints();
@@ -479,25 +480,47 @@ class RigidStepper {
   void begin_lanes() {
     const Real h = substep();
     const Softness<Real> soft = softness_of_contacts();
-    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_, are_same_in_lanes_);
+    find_easy_bodies();
+    const bool are_same_groups = group_islands();
+    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_, groups_,
+                     are_same_in_lanes_ && are_same_groups);
     points_.begin(bodies_, manifolds_.states(), point_joints_);
     points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, softness_of_contacts_at_fixed(), options_.fastest_push);
     // One sweep leaves bodies that are deep in each other a part of the speed at which they are pushed apart.
     manifolds_.set_deep(options_.fastest_push / (8 * soft.rate));
     statistics.colours = manifolds_.colours();
-    const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
+      if (groups_.of(i) != 0 || !(is_in_lanes_[i] != 0 || is_driven(i))) continue;
+      is_easy_[i] != 0 ? easy_.push_back(i) : in_lanes_.push_back(i);
+      if (is_easy_[i] != 0 && is_alone_[i] != 0) easy_alone_.push_back(i);
+    }
+    manifolds_.set_movers(easy_, groups_);
+  }
+  /// Bodies without contacts are in lanes as well.
+  void find_easy_bodies() {
+    const bool is_simple = only_gravity(world_) && world_.torque_laws.empty();
+    for (std::size_t i = 0; i < world_.size(); ++i) {
       const RigidBody<Real, Dim>& body = bodies_[i];
       if (!body.is_fixed() && is_alone_[i] != 0) is_in_lanes_[i] = 1;
-      const bool is_driven = body.is_fixed() && (body.v != V{} || body.spin != S{});
-      if (is_in_lanes_[i] == 0 && !is_driven) continue;
-      const bool is_easy = is_simple && body.is_ball && !is_driven && !is_damped(i);
-      is_easy_[i] = is_easy ? 1 : 0;
-      is_easy ? easy_.push_back(i) : in_lanes_.push_back(i);
-      if (is_easy && is_alone_[i] != 0) easy_alone_.push_back(i);
+      is_easy_[i] = is_in_lanes_[i] != 0 && is_simple && body.is_ball && !is_damped(i) ? 1 : 0;
     }
-    manifolds_.set_movers(easy_);
+  }
+  /// Islands of which nothing is asked but gravity, contacts and motion go through all substeps together. Returns
+  /// whether these are those of the last step.
+  bool group_islands() {
+    std::vector<std::uint8_t> drives(world_.size());
+    for (std::uint32_t i = 0; i < world_.size(); ++i) drives[i] = is_driven(i) ? 1 : 0;
+    const bool has_driven = std::ranges::find(drives, 1) != drives.end();
+    const auto touches_driven = [&](std::uint32_t k) {
+      const auto drives_body = [&](std::uint32_t i) { return i < drives.size() && drives[i] != 0; };
+      return drives_body(rows_.blocks[k].a) || drives_body(rows_.blocks[k].b);
+    };
+    return groups_.find(islands_, world_.size(), [&](std::size_t k) {
+      return is_swept_[k] && joints_of(k).empty() &&
+             std::ranges::all_of(islands_.bodies(k), [this](std::uint32_t i) { return is_easy_[i] != 0; }) &&
+             !(has_driven && std::ranges::any_of(islands_.blocks(k), touches_driven));
+    });
   }
   [[nodiscard]] bool is_damped(std::size_t i) const {
     if (!world_.has_traits()) return false;
@@ -531,6 +554,12 @@ class RigidStepper {
     });
   }
 
+  [[nodiscard]] bool has_groups() const { return has_lanes() && groups_.size() > 1; }
+  void advance_groups() {
+    find_accelerations(world_.time);
+    manifolds_.advance_groups(contacts_.all(), swept_, groups_, acceleration_, options_.substeps,
+                              sweeps_of_deep_contacts);
+  }
   void move_substep(const Real& now, const Real& h) {
     note_spin_energies();
     accelerate(now, h);
@@ -723,13 +752,11 @@ class RigidStepper {
     body.axes = rotation(body.orientation);
   }
   [[nodiscard]] bool has_joint_rows() const { return rows_.blocks.size() > active_.size() + point_joints_.size(); }
-  void accelerate(const Real& now, const Real& h) {
+  /// Without those by damping, which depend on the substep.
+  void find_accelerations(const Real& now) {
     const std::size_t n = world_.size();
     acceleration_.resize(n);
-    const bool has_only_gravity = only_gravity(world_);
-    for (const std::uint32_t i : in_lanes_)
-      if (!bodies_[i].is_fixed()) take_state(i);
-    if (has_only_gravity) {
+    if (only_gravity(world_)) {
       for (std::size_t i = 0; i < n; ++i) acceleration_[i] = world_.gravity;
     } else {
       std::vector<V> x(n), v(n);
@@ -739,6 +766,11 @@ class RigidStepper {
     }
     for (std::size_t i = 0; world_.has_traits() && i < n; ++i)
       acceleration_[i] += world_.gravity * (world_.traits(i).gravity_scale - 1);
+  }
+  void accelerate(const Real& now, const Real& h) {
+    for (const std::uint32_t i : in_lanes_)
+      if (!bodies_[i].is_fixed()) take_state(i);
+    find_accelerations(now);
     std::vector<S> torque;
     if (!world_.torque_laws.empty()) torque = torques_now(now);
     for (const std::uint32_t i : not_easy_) {
@@ -894,6 +926,7 @@ class RigidStepper {
       sweep_joints(RowPass::relax);
       points_.sweep(ManifoldPass::rebound);
       manifolds_.sweep(ManifoldPass::rebound);
+      manifolds_.sweep_groups(ManifoldPass::rebound);
     }
   }
   [[nodiscard]] static bool does_rebound(const RigidContact<Real, Dim>& contact,
@@ -1057,6 +1090,7 @@ class RigidStepper {
   Result<ManifoldKernels<Real, Dim>> kernels_;
   ManifoldSolver<Real, Dim> manifolds_{team_, kernels_ ? *kernels_ : ManifoldKernels<Real, Dim>{}};
   PointJointSolver<Real, Dim> points_{team_, kernels_ ? *kernels_ : ManifoldKernels<Real, Dim>{}};
+  IslandGroups groups_;                                     // of those that are swept
   std::vector<std::uint32_t> swept_;                        // the contacts of islands that are swept
   std::vector<std::uint32_t> swept_joints_;                 // their blocks of joints and locks
   std::vector<std::uint32_t> joined_;                       // the bodies of these
