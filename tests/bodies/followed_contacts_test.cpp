@@ -137,6 +137,7 @@ TEST(FollowedContacts, TurnWithBothBodies) {
     if (found.size == 0) continue;
     RigidContact<double, 3> contact;
     renew(contact, found, boxes.at_a.pose(), margin, boxes.at_a, boxes.at_b);
+    contact.points[0].friction = {{0.6, -0.8}};
     const RigidContact<double, 3> before = contact;
     const Pose<double, 3> turn{{{1, 2, 3}}, rotation(Orientation<double, 3>{{std::cos(0.002), std::sin(0.002), 0, 0}})};
     auto a = boxes.at_a, b = boxes.at_b;
@@ -150,14 +151,20 @@ TEST(FollowedContacts, TurnWithBothBodies) {
       EXPECT_NEAR(contact.points[i].separation, before.points[i].separation, 1e-12 * size);
       EXPECT_LT(length(contact.points[i].arm_a - turn.axes * before.points[i].arm_a), 1e-12 * (a.x[0] + size + 10));
     }
-    // By 0.004 radians the frame in which sweeps hold it has not turned; twice that it has to follow.
+    // By 0.004 radians the frame in which sweeps hold it has not turned far; twice that it has to follow.
+    EXPECT_FALSE(has_turned_far(contact, a));
     EXPECT_LT(length(HeldFrame(contact).normal - before.normal), 1e-12);
     for (RigidBody<double, 3>* body : {&a, &b}) {
       body->x = turn.place(body->x);
       for (std::size_t axis = 0; axis < 3; ++axis) body->axes[axis] = turn.axes * body->axes[axis];
     }
+    ASSERT_TRUE(has_turned_far(contact, a));
+    const Vector<double, 3> friction = in_world(contact.points[0].friction, HeldFrame(contact).normal);
+    turn_held_frame(contact, a);
     ASSERT_TRUE(follow(contact, margin, size, boxes.a.reach < boxes.b.reach, a, b));
     EXPECT_LT(length(HeldFrame(contact).normal - contact.normal), 1e-12);
+    // The impulses of friction, of length 1, are what they were in the world, but for what is along the new normal.
+    EXPECT_LT(length(in_world(contact.points[0].friction, contact.normal) - friction), 0.0081);
   }
 }
 

@@ -75,7 +75,7 @@ Scene<Real, Dim> random_scene(unsigned seed, std::size_t bodies, std::size_t con
       point.local_a = point.arm_a, point.local_b = point.arm_b;
       point.separation = numbers.between<Real>(-0.1, 0.02);
       point.impulse = numbers.between<Real>(0, 1);
-      point.friction = directions_across(contact.normal)[0] * numbers.between<Real>(-0.2, 0.2);
+      point.friction[0] = numbers.between<Real>(-0.2, 0.2);
     }
     scene.which.push_back(static_cast<std::uint32_t>(scene.contacts.size()));
     scene.contacts.push_back(found);
@@ -88,7 +88,8 @@ template <class Real, int Dim>
 std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim>& kernels) {
   ThreadTeam team(1);
   ManifoldSolver<Real, Dim> solver(team, kernels);
-  solver.begin(scene.bodies, scene.contacts, scene.heads(), scene.which);
+  const auto heads = scene.heads();
+  solver.begin(scene.bodies, {.all = scene.contacts, .heads = heads, .separations = {}, .which = scene.which});
   const Real h = Real(1) / 240;
   solver.set_hardness(h, softness(Real(30), Real(10), h), softness(Real(60), Real(10), h), Real(4));
   std::vector<Real> numbers;
@@ -105,7 +106,7 @@ std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim
       }
     }
   }
-  solver.store_impulses(scene.contacts, scene.which);
+  solver.store_impulses(scene.contacts);
   for (const auto& found : scene.contacts)
     for (const auto& point : found.contact.all()) {
       numbers.push_back(point.impulse);

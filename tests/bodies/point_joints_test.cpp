@@ -65,7 +65,7 @@ class Solved {
 
   Solved(Scene<Real, Dim>& scene, const ManifoldKernels<Real, Dim>& kernels)
       : scene_(scene), states_(team_, kernels), joints_(team_, kernels) {
-    states_.begin(scene.bodies, {}, {}, {});
+    states_.begin(scene.bodies, {});
     joints_.begin(scene.bodies, states_.states(), scene.joints);
     joints_.set_hardness(h, softness(Real(60), Real(2), h), Real(4));
   }

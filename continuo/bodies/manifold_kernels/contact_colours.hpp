@@ -99,12 +99,12 @@ class LanesOfColours {
   static constexpr std::uint32_t none = 0xffffffff;
 
   /// Takes the colours of contacts for registers of so many lanes, and the group of each contact, which is below
-  /// `groups`.
-  void find(const ContactColours& colours, std::size_t lanes, std::span<const std::uint32_t> group_of,
-            std::size_t groups) {
+  /// `groups`, unless all are of one.
+  void find(const ContactColours& colours, std::size_t lanes, std::span<const std::uint32_t> group_of = {},
+            std::size_t groups = 1) {
     next_.assign(groups * most, 0);
     const auto next = [&](std::size_t contact, std::size_t colour) -> std::size_t& {
-      return next_[group_of[contact] * most + colour];
+      return next_[(groups > 1 ? group_of[contact] : 0) * most + colour];
     };
     for (std::size_t c = 0; c < most; ++c)
       for (const std::uint32_t k : colours.of(c)) ++next(k, c);
@@ -129,11 +129,6 @@ class LanesOfColours {
         in_lane_[next(k, c)] = k;
         next(k, c) += ContactColours::is_shared(c) ? lanes : 1;
       }
-  }
-  /// All contacts are of one group.
-  void find(const ContactColours& colours, std::size_t lanes, std::size_t contacts) {
-    const std::vector<std::uint32_t> group_of(contacts);
-    find(colours, lanes, group_of, 1);
   }
   /// The batches of a group, colour by colour.
   [[nodiscard]] std::span<const BatchRun> runs(std::size_t group) const {

@@ -106,7 +106,7 @@ class PointJointSolver {
     for (std::size_t k = 0; k < joints.size(); ++k) coloured_[k] = {mover(joints[k].a), mover(joints[k].b), 1};
     const std::size_t lanes = kernels_.lanes;
     const bool are_others = colours_.find(coloured_, bodies.size());
-    if (are_others) lanes_.find(colours_, lanes, joints.size());
+    if (are_others) lanes_.find(colours_, lanes);
     const std::size_t batches = lanes_.batches();
     heads_.assign(batches, {});
     const auto spare = static_cast<std::uint32_t>(bodies.size());  // a body that never moves

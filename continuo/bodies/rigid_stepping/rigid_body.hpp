@@ -37,7 +37,7 @@ struct RigidBody {
   /// After the orientation has changed.
   void update_axes() {
     axes = rotation(orientation);
-    inverse_inertia_now = turned_inertia(axes, inverse_inertia);
+    inverse_inertia_now = is_ball ? inverse_inertia : turned_inertia(axes, inverse_inertia);
   }
   void move(const Real& h) {
     x += v * h;

@@ -36,7 +36,7 @@ struct RigidContactPoint {
   Real local_apart{};                      // how far both were apart along the normal when the step began
   Real approach{};                         // normal velocity then
   Real impulse{};                          // along the normal, of the last substep
-  Vector<Real, Dim> friction{};            // impulse across it
+  Vector<Real, Dim - 1> friction{};        // impulses along the directions across the normal of the held frame
   Real greatest_impulse{};                 // along the normal, of the substeps of this step
   std::uint32_t feature = 0;
 };
@@ -79,26 +79,68 @@ struct HeldFrame {
     return axes * point.local_a;
   }
 };
-/// Lets the frame of a contact follow body a where that has turned far.
+/// Impulses of friction, along the directions across a normal, in the world; and back.
+/// @{
 template <class Real, int Dim>
-void hold(RigidContact<Real, Dim>& contact, const RigidBody<Real, Dim>& a) {
+[[nodiscard]] Vector<Real, Dim> in_world(const Vector<Real, Dim - 1>& friction, const Vector<Real, Dim>& normal) {
+  const auto across = directions_across(normal);
+  Vector<Real, Dim> sum;
+  for (std::size_t i = 0; i < friction.size(); ++i) sum += across[i] * friction[i];
+  return sum;
+}
+template <class Real, int Dim>
+[[nodiscard]] Vector<Real, Dim - 1> across_normal(const Vector<Real, Dim>& friction, const Vector<Real, Dim>& normal) {
+  const auto across = directions_across(normal);
+  Vector<Real, Dim - 1> parts;
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = dot(friction, across[i]);
+  return parts;
+}
+/// @}
+/// The same impulses where a normal has turned. In the plane they turn with it; in space the directions across it may
+/// be others altogether.
+/// @{
+template <class Real>
+[[nodiscard]] Vector<Real, 1> turned_friction(const Vector<Real, 1>& friction, const Vector<Real, 2>&,
+                                              const Vector<Real, 2>&) {
+  return friction;
+}
+template <class Real>
+[[nodiscard]] Vector<Real, 2> turned_friction(const Vector<Real, 2>& friction, const Vector<Real, 3>& before,
+                                              const Vector<Real, 3>& now) {
+  return across_normal(in_world(friction, before), now);
+}
+/// @}
+/// Whether the frame of a contact should follow body a, which has turned far.
+template <class Real, int Dim>
+[[nodiscard]] bool has_turned_far(const RigidContact<Real, Dim>& contact, const RigidBody<Real, Dim>& a) {
   constexpr Real most = HeldFrame<Real, Dim>::most_turn;
   for (std::size_t axis = 0; axis < Dim; ++axis)
-    if (!(squared(a.axes[axis] - contact.held_axes[axis]) <= most * most)) contact.held_axes = a.axes;
+    if (!(squared(a.axes[axis] - contact.held_axes[axis]) <= most * most)) return true;
+  return false;
+}
+/// Lets it do so.
+template <class Real, int Dim>
+void turn_held_frame(RigidContact<Real, Dim>& contact, const RigidBody<Real, Dim>& a) {
+  const Vector<Real, Dim> before = HeldFrame(contact).normal;
+  contact.held_axes = a.axes;
+  const Vector<Real, Dim> now = HeldFrame(contact).normal;
+  for (auto& point : contact.all()) point.friction = turned_friction(point.friction, before, now);
 }
 
 /// Gives a contact of bodies a and b a manifold whose points are in the frame `of_a`. Points with the features of
 /// points of before keep their impulses.
 template <class Real, int Dim>
-void renew(RigidContact<Real, Dim>& contact, const Manifold<Real, Dim>& manifold, const Pose<Real, Dim>& of_a,
-           const Real& margin, const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+[[gnu::flatten]] void renew(RigidContact<Real, Dim>& contact, const Manifold<Real, Dim>& manifold,
+                            const Pose<Real, Dim>& of_a, const Real& margin, const RigidBody<Real, Dim>& a,
+                            const RigidBody<Real, Dim>& b) {
   struct Kept {
     std::uint32_t feature = 0;
     Real impulse{};
-    Vector<Real, Dim> friction{};
+    Vector<Real, Dim - 1> friction{};
   };
   std::array<Kept, RigidContact<Real, Dim>::most_points> kept;
   const std::size_t points_before = contact.size;
+  const Vector<Real, Dim> normal_before = HeldFrame(contact).normal;
   for (std::size_t k = 0; k < points_before; ++k)
     kept[k] = {contact.points[k].feature, contact.points[k].impulse, contact.points[k].friction};
   contact.size = manifold.size;
@@ -108,13 +150,15 @@ void renew(RigidContact<Real, Dim>& contact, const Manifold<Real, Dim>& manifold
   contact.normal_in_a = a.pose().local_direction(contact.normal);
   contact.found_at = relative(a.pose(), b.pose());
   contact.held_axes = a.axes;
+  const Vector<Real, Dim> normal = HeldFrame(contact).normal;
   for (std::size_t i = 0; i < manifold.size; ++i) {
     const ManifoldPoint<Real, Dim>& found = manifold.points[i];
     RigidContactPoint<Real, Dim>& point = contact.points[i];
     point.feature = found.feature;
     point.impulse = point.greatest_impulse = Real(0), point.friction = {};
     for (std::size_t k = 0; k < points_before; ++k)
-      if (kept[k].feature == found.feature) point.impulse = kept[k].impulse, point.friction = kept[k].friction;
+      if (kept[k].feature == found.feature)
+        point.impulse = kept[k].impulse, point.friction = turned_friction(kept[k].friction, normal_before, normal);
     const Vector<Real, Dim> x = of_a.place(found.position);
     point.arm_a = x - a.x, point.arm_b = x - b.x;
     point.local_a = a.pose().local(x), point.local_b = b.pose().local(x);
@@ -152,11 +196,11 @@ template <class Real, int Dim>
 /// on from a snapshot. Neither of them is rounded: where such a body rolls, neither the normal nor the points turn with
 /// it.
 template <class Real, int Dim>
-[[nodiscard]] bool follow(RigidContact<Real, Dim>& contact, const Real& margin, const Real& size, bool is_a_smaller,
-                          const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
+[[nodiscard, gnu::flatten]] bool follow(RigidContact<Real, Dim>& contact, const Real& margin, const Real& size,
+                                        bool is_a_smaller, const RigidBody<Real, Dim>& a,
+                                        const RigidBody<Real, Dim>& b) {
   if (contact.size == 0 || margin > contact.margin + size / 1000) return false;
   if (!are_as_found(contact, size, is_a_smaller, a, b)) return false;
-  hold(contact, a);
   contact.normal = a.axes * contact.normal_in_a;
   const Vector<Real, Dim> between = b.x - a.x;
   Real nearest = std::numeric_limits<Real>::infinity();
@@ -228,8 +272,11 @@ template <class Real, int Dim>
     row.impulse = point.impulse;
   }
   const auto across = directions_across(contact.normal);
-  for (const auto& point : contact.all())
-    for (const Vector<Real, Dim>& direction : across) add(direction, point).impulse = dot(point.friction, direction);
+  const Vector<Real, Dim> held = HeldFrame(contact).normal;
+  for (const auto& point : contact.all()) {
+    const Vector<Real, Dim> friction = in_world(point.friction, held);
+    for (const Vector<Real, Dim>& direction : across) add(direction, point).impulse = dot(friction, direction);
+  }
   return block;
 }
 
@@ -278,14 +325,16 @@ void aim(const RigidContact<Real, Dim>& contact, std::span<ConstraintRow<Real, D
 /// Keeps the impulses of a substep.
 template <class Real, int Dim>
 void keep_impulses(RigidContact<Real, Dim>& contact, std::span<const ConstraintRow<Real, Dim>> rows) {
+  const Vector<Real, Dim> held = HeldFrame(contact).normal;
   for (std::size_t i = 0; i < contact.size; ++i) {
     auto& point = contact.points[i];
     point.impulse = rows[i].impulse;
-    point.friction = {};
+    Vector<Real, Dim> friction;
     for (std::size_t k = 0; k < Dim - 1; ++k) {
       const auto& row = rows[contact.size + i * (Dim - 1) + k];
-      point.friction += row.direction * row.impulse;
+      friction += row.direction * row.impulse;
     }
+    point.friction = across_normal(friction, held);
   }
 }
 

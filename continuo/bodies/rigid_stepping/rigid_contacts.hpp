@@ -1,6 +1,7 @@
 // The contacts of a step: those pairs of parts whose surfaces are near, with the impulses of the last step.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -46,20 +47,24 @@ class RigidContacts {
   using V = Vector<Real, Dim>;
 
   /// Finds the contacts of all pairs, where `is_active(a, b)` tells whether one of the bodies is awake; contacts of
-  /// others stay as they are. The walls are the last of the bodies.
-  template <class IsActive>
+  /// others stay as they are. The walls are the last of the bodies. The impulses of contacts may be elsewhere:
+  /// impulses.take_impulses(number, contact) gives one its own before it changes, several at once, and
+  /// impulses.take_all_impulses(contacts) all of them before they become others.
+  template <class IsActive, class Impulses>
   void find(ThreadTeam& team, const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
-            std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active) {
+            std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active, Impulses& impulses) {
+    if (!world.meshes().empty() || !are_apart_ || pairs.first_mesh() != first_mesh_)
+      impulses.take_all_impulses(contacts_);
     set_mesh_contacts_apart(pairs.first_mesh());
     have_other_heads_ |= heads_.size() != contacts_.size();
-    heads_.resize(contacts_.size());
+    heads_.resize(contacts_.size()), separations_.resize(contacts_.size());
     take_materials(world);
     blocks_.resize(std::clamp<std::size_t>(pairs.pairs().size() / 256, 1, 1024));
     team.share(blocks_.size(), [&](std::size_t k) {
       begin_block(k, pairs.pairs());
-      find_in_block(world, pairs, bodies, step, is_active, k);
+      find_in_block(world, pairs, bodies, step, is_active, impulses, k);
     });
-    take_blocks(team);
+    take_blocks(team, impulses);
     without_meshes_ = contacts_.size();
     if (!world.meshes().empty()) find_at_meshes(team, world, pairs, bodies, step, is_active);
   }
@@ -69,6 +74,9 @@ class RigidContacts {
   [[nodiscard]] std::span<const PartContact<Real, Dim>> all() const { return contacts_; }
   /// The same, since the contacts were found.
   [[nodiscard]] std::span<const ContactHead> heads() const { return heads_; }
+  /// The separations of the points of those that are active, unless a head has changed.
+  using Separations = std::array<Real, RigidContact<Real, Dim>::most_points>;
+  [[nodiscard]] std::span<const Separations> separations() const { return separations_; }
   /// Whether a head has changed since this was last asked, as it rarely does in a heap at rest.
   [[nodiscard]] bool take_change_of_heads() { return std::exchange(have_other_heads_, false); }
   /// Those of parts and walls.
@@ -103,7 +111,7 @@ class RigidContacts {
   }
   [[nodiscard]] std::size_t memory() const {
     return (contacts_.capacity() + merged_.capacity()) * sizeof(PartContact<Real, Dim>) +
-           heads_.capacity() * sizeof(ContactHead);
+           heads_.capacity() * sizeof(ContactHead) + separations_.capacity() * sizeof(Separations);
   }
 
  private:
@@ -160,12 +168,16 @@ class RigidContacts {
     block.lost = 0, block.has_other_heads = false;
     block.born.clear();
   }
-  template <class IsActive>
+  template <class IsActive, class Impulses>
   void find_in_block(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
                      std::span<const RigidBody<Real, Dim>> bodies, const Real& step, IsActive&& is_active,
-                     std::size_t k) {
+                     Impulses& impulses, std::size_t k) {
     Block& block = blocks_[k];
     std::size_t old = block.first;
+    const auto take = [&](PartContact<Real, Dim>& contact) {
+      const auto number = static_cast<std::size_t>(&contact - contacts_.data());
+      if (number < contacts_.size()) impulses.take_impulses(number, contact.contact);  // it is none of the new ones
+    };
     const auto lose = [&](PartContact<Real, Dim>& contact) { contact.contact.size = 0, ++block.lost; };
     for (const PartPair& pair : pairs.pairs().subspan(block.first_pair, block.last_pair - block.first_pair)) {
       if (pair.b >= first_mesh_) continue;
@@ -175,7 +187,7 @@ class RigidContacts {
       const auto [a, b] = bodies_of(pair, world, pairs);
       if (before) {
         before->a = a, before->b = b;
-        if (have_other_materials_) combine_materials(world, *before);
+        if (have_other_materials_) take(*before), combine_materials(world, *before);
       }
       if (!is_active(a, b)) {
         if (before) note_head(*before, block);
@@ -188,18 +200,19 @@ class RigidContacts {
         if (before) lose(*before);
         continue;
       }
-      PartContact<Real, Dim>& now =
-          before ? *before
-                 : block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
-      update(world, pairs, bodies, margin, now);
       if (before) {
-        note_head(now, block);
-        if (now.contact.size == 0) ++block.lost;
-      } else if (now.contact.size == 0) {
-        block.born.pop_back();
-      } else {
-        combine_materials(world, now);
+        update(world, pairs, bodies, margin, *before, take);
+        note_head(*before, block);
+        if (before->contact.size == 0) ++block.lost;
+        continue;
       }
+      const Manifold<Real, Dim> touching = manifold_of_pair(world, pairs, bodies, pair, margin);
+      if (touching.size == 0) continue;
+      PartContact<Real, Dim>& born =
+          block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
+      renew(born.contact, touching, pairs.placed(pair.a).pose, margin, bodies[a], bodies[b]);
+      take_rounding(pairs, born);
+      combine_materials(world, born);
     }
     while (old < block.last) lose(contacts_[old++]);
   }
@@ -208,6 +221,8 @@ class RigidContacts {
     const ContactHead now = head_of(of);
     block.has_other_heads |= head != now;
     head = now;
+    const std::size_t number = static_cast<std::size_t>(&of - contacts_.data());
+    for (std::size_t i = 0; i < of.contact.size; ++i) separations_[number][i] = of.contact.points[i].separation;
   }
   /// What frictions and restitutions are combined from is most often what it was in the last step.
   void take_materials(const World<Real, Dim>& world) {
@@ -248,7 +263,8 @@ class RigidContacts {
   }
   /// @}
   /// Puts the contacts of before that are still there and the new ones into one list.
-  void take_blocks(ThreadTeam& team) {
+  template <class Impulses>
+  void take_blocks(ThreadTeam& team, Impulses& impulses) {
     std::size_t size = 0;
     bool are_same = true;
     for (Block& block : blocks_) {
@@ -258,12 +274,13 @@ class RigidContacts {
     }
     have_other_heads_ |= !are_same;
     if (are_same) return;
+    impulses.take_all_impulses(contacts_);
     // Contacts are most of the memory of a heap: what they are put into has hardly more room than they need.
     if (merged_.capacity() < size) {
       merged_ = {};
       merged_.reserve(size + size / 16);
     }
-    merged_.resize(size), heads_.resize(size);
+    merged_.resize(size), heads_.resize(size), separations_.resize(size);
     team.share(blocks_.size(), [this](std::size_t k) {
       Block& block = blocks_[k];
       auto next = block.born.begin();
@@ -322,39 +339,55 @@ class RigidContacts {
       made.contact.friction = both.friction, made.contact.restitution = both.restitution;
     });
   }
-  static void update(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
-                     std::span<const RigidBody<Real, Dim>> bodies, const Real& margin, PartContact<Real, Dim>& found) {
+  /// Where a part touches another one, or a wall, in the frame of the part.
+  [[nodiscard]] static Manifold<Real, Dim> manifold_of_pair(const World<Real, Dim>& world,
+                                                            const RigidPairs<Real, Dim>& pairs,
+                                                            std::span<const RigidBody<Real, Dim>> bodies,
+                                                            const PartPair& pair, const Real& margin) {
     const auto parts = pairs.parts();
-    const RigidPart<Real, Dim>& part_a = parts[found.parts.a];
-    const bool is_wall = found.parts.b >= parts.size();
-    const std::uint32_t wall = is_wall ? found.parts.b - static_cast<std::uint32_t>(parts.size()) : 0;
-    const std::uint32_t a = found.a, b = found.b;
-    const PlacedPart<Real, Dim>& placed_a = pairs.placed(found.parts.a);
+    const RigidPart<Real, Dim>& a = parts[pair.a];
+    const PlacedPart<Real, Dim>& placed_a = pairs.placed(pair.a);
     const Pose<Real, Dim>& pose = placed_a.pose;
-    if (is_wall) {
-      const Wall<Real, Dim> turned = facing(world.walls()[wall], bodies[a].x);
+    if (pair.b >= parts.size()) {
+      const Wall<Real, Dim> turned = facing(world.walls()[pair.b - parts.size()], bodies[a.body].x);
       const Plane<Real, Dim> plane{pose.local_direction(turned.normal),
                                    turned.offset - dot(turned.normal, pose.centre)};
-      const Manifold<Real, Dim> touching = manifold(*part_a.convex, plane, margin);
-      renew(found.contact, touching, pose, margin, bodies[a], bodies[b]);
-    } else {
-      const RigidPart<Real, Dim>& part_b = parts[found.parts.b];
-      const PlacedPart<Real, Dim>& placed_b = pairs.placed(found.parts.b);
-      const Real size = std::min(placed_a.reach, placed_b.reach);
-      const bool is_round = part_a.rounding + part_b.rounding > Real(0);
-      const bool is_a_smaller = placed_a.reach < placed_b.reach;
-      if (is_round || !follow(found.contact, margin, size, is_a_smaller, bodies[a], bodies[b])) {
-        const Pose<Real, Dim> b_in_a = relative(pose, placed_b.pose);
-        const Manifold<Real, Dim> touching =
-            part_a.is_box() && part_b.is_box()
-                ? manifold_of_boxes(*part_a.convex, *part_b.convex, {part_a.half, part_b.half, b_in_a, size}, margin)
-                : manifold(*part_a.convex, *part_b.convex, b_in_a, margin);
-        renew(found.contact, touching, pose, margin, bodies[a], bodies[b]);
-      }
+      return manifold(*a.convex, plane, margin);
     }
-    if (found.contact.size == 0) return;
-    found.contact.rounding_a = part_a.rounding,
-    found.contact.rounding_b = is_wall ? Real(0) : parts[found.parts.b].rounding;
+    const RigidPart<Real, Dim>& b = parts[pair.b];
+    const PlacedPart<Real, Dim>& placed_b = pairs.placed(pair.b);
+    const Pose<Real, Dim> b_in_a = relative(pose, placed_b.pose);
+    if (!a.is_box() || !b.is_box()) return manifold(*a.convex, *b.convex, b_in_a, margin);
+    const Real size = std::min(placed_a.reach, placed_b.reach);
+    return manifold_of_boxes(*a.convex, *b.convex, {a.half, b.half, b_in_a, size}, margin);
+  }
+  /// Calls take(found) before its points or its frame change.
+  template <class Take>
+  static void update(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
+                     std::span<const RigidBody<Real, Dim>> bodies, const Real& margin, PartContact<Real, Dim>& found,
+                     Take&& take) {
+    const RigidBody<Real, Dim>&a = bodies[found.a], &b = bodies[found.b];
+    RigidContact<Real, Dim>& contact = found.contact;
+    if (may_follow(pairs, found)) {
+      if (has_turned_far(contact, a)) take(found), turn_held_frame(contact, a);
+      const Real reach_a = pairs.placed(found.parts.a).reach, reach_b = pairs.placed(found.parts.b).reach;
+      if (follow(contact, margin, std::min(reach_a, reach_b), reach_a < reach_b, a, b)) return;
+    }
+    take(found);
+    renew(contact, manifold_of_pair(world, pairs, bodies, found.parts, margin), pairs.placed(found.parts.a).pose,
+          margin, a, b);
+    take_rounding(pairs, found);
+  }
+  /// Those with walls and of rounded parts are found anew in each step.
+  [[nodiscard]] static bool may_follow(const RigidPairs<Real, Dim>& pairs, const PartContact<Real, Dim>& found) {
+    const auto parts = pairs.parts();
+    return found.contact.size > 0 && found.parts.b < parts.size() && parts[found.parts.a].rounding == Real(0) &&
+           parts[found.parts.b].rounding == Real(0);
+  }
+  static void take_rounding(const RigidPairs<Real, Dim>& pairs, PartContact<Real, Dim>& found) {
+    const auto parts = pairs.parts();
+    found.contact.rounding_a = parts[found.parts.a].rounding;
+    found.contact.rounding_b = found.parts.b < parts.size() ? parts[found.parts.b].rounding : Real(0);
   }
   /// What the materials of contacts with parts and walls were combined from.
   struct Materials {
@@ -362,8 +395,9 @@ class RigidContacts {
     std::vector<Material<Real>> of_bodies{}, of_walls{};
   };
   std::vector<PartContact<Real, Dim>> contacts_, merged_, mesh_before_;
-  std::vector<ContactHead> heads_;  // of the contacts
-  bool have_other_heads_ = true;    // see take_change_of_heads
+  std::vector<ContactHead> heads_;        // of the contacts
+  std::vector<Separations> separations_;  // likewise
+  bool have_other_heads_ = true;          // see take_change_of_heads
   Materials materials_;
   bool have_other_materials_ = true;  // since the last step
   std::size_t without_meshes_ = 0;

@@ -49,6 +49,7 @@ class RigidStepper {
   void renew() {
     is_stale_ = true;
     contacts_.clear();
+    manifolds_.forget_impulses();
     sleep_ = {};
   }
   /// Of the same step, substeps, integrator, threads, registers and records.
@@ -75,6 +76,7 @@ class RigidStepper {
   /// @{
   void save(ByteWriter& writer) const { const_cast<RigidStepper*>(this)->transfer(writer); }
   void load(ByteReader& reader) {
+    manifolds_.take_all_impulses(contacts_.all());
     auto before = std::tuple(contacts_, joints_, touches_, sleep_);
     transfer(reader);
     reader.expect(sleep_.fits(world_.size()), "the sleep of other bodies");
@@ -105,7 +107,7 @@ class RigidStepper {
     const Real h = substep();
     if (has_groups()) advance_groups();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
-    if (!swept_.empty()) manifolds_.store_impulses(contacts_.all(), swept_);
+    if (has_restitution_ || log.is_kept()) manifolds_.store_impulses(contacts_.all());
     keep_point_joints();
     take_states();
     rebound();
@@ -240,7 +242,7 @@ class RigidStepper {
         return fault;
       }
       const auto is_active = [this](std::uint32_t a, std::uint32_t b) { return moves(a) || moves(b); };
-      contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active);
+      contacts_.find(team_, world_, pairs_, bodies_, options_.step, is_active, manifolds_);
       if (!sleep_.wake_touched(contacts_.all(), bodies_, world_.radius, options_.sleep_speed)) return {};
       load_bodies();
     }
@@ -330,6 +332,7 @@ class RigidStepper {
     };
     are_same_in_lanes_ = are_same_islands_ && is_swept_ == is_swept_before_;
     if (!are_same_in_lanes_) {
+      manifolds_.take_all_impulses(contacts_.all());
       swept_.resize(active_.size());
       std::size_t count = 0;
       for (std::uint32_t block = 0; block < active_.size(); ++block) {
@@ -482,8 +485,7 @@ class RigidStepper {
     const Softness<Real> soft = softness_of_contacts();
     find_easy_bodies();
     const bool are_same_groups = group_islands();
-    manifolds_.begin(bodies_, contacts_.all(), contacts_.heads(), swept_, groups_,
-                     are_same_in_lanes_ && are_same_groups);
+    manifolds_.begin(bodies_, swept_contacts(), groups_, are_same_in_lanes_ && are_same_groups);
     points_.begin(bodies_, manifolds_.states(), point_joints_);
     points_.set_hardness(h, softness_of_joints(), options_.fastest_push);
     manifolds_.set_hardness(h, soft, softness_of_contacts_at_fixed(), options_.fastest_push);
@@ -496,6 +498,9 @@ class RigidStepper {
       if (is_easy_[i] != 0 && is_alone_[i] != 0) easy_alone_.push_back(i);
     }
     manifolds_.set_movers(easy_, groups_);
+  }
+  [[nodiscard]] SweptContacts<Real, Dim> swept_contacts() {
+    return {contacts_.all(), contacts_.heads(), contacts_.separations(), swept_};
   }
   /// Bodies without contacts are in lanes as well.
   void find_easy_bodies() {
@@ -557,8 +562,7 @@ class RigidStepper {
   [[nodiscard]] bool has_groups() const { return has_lanes() && groups_.size() > 1; }
   void advance_groups() {
     find_accelerations(world_.time);
-    manifolds_.advance_groups(contacts_.all(), swept_, groups_, acceleration_, options_.substeps,
-                              sweeps_of_deep_contacts);
+    manifolds_.advance_groups(swept_contacts(), groups_, acceleration_, options_.substeps, sweeps_of_deep_contacts);
   }
   void move_substep(const Real& now, const Real& h) {
     note_spin_energies();
@@ -912,7 +916,7 @@ class RigidStepper {
     }
     if (!acts) return;
     manifolds_.prepare_rebound(
-        contacts_.all(), swept_, [&](const auto& found) { return is_meant[found.a] || is_meant[found.b]; },
+        swept_contacts(), [&](const auto& found) { return is_meant[found.a] || is_meant[found.b]; },
         [&](const auto& contact, const auto& point) {
           return does_rebound(contact, point, threshold) ? contact.restitution * point.approach : Real(0);
         });
@@ -1065,6 +1069,7 @@ class RigidStepper {
   };
   template <class Archive>
   void transfer(Archive& archive) {
+    if constexpr (!Archive::reads) manifolds_.store_impulses(contacts_.all());
     contacts_.transfer(archive, bodies_of(world_));
     auto joints = static_cast<std::uint64_t>(joints_.size());
     archive(joints);
