@@ -14,6 +14,7 @@
 #include <continuo/bodies/manifold_kernels/contact_colours.hpp>
 #include <continuo/bodies/manifold_kernels/manifold_layout.hpp>
 #include <continuo/bodies/manifold_kernels/solver_states.hpp>
+#include <continuo/bodies/rigid_stepping/heavy_bodies.hpp>
 #include <continuo/bodies/rigid_stepping/island_groups.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
 #include <continuo/bodies/support/large_array.hpp>
@@ -76,6 +77,7 @@ class ManifoldSolver {
   /// Whether there are any, apart from groups.
   [[nodiscard]] bool is_deep() const { return !deep_runs_.empty(); }
   void sweep(ManifoldPass pass) {
+    heavy_.spread(states_.data(), copies());
     for (const BatchRun& run :
          pass == ManifoldPass::relax_deep ? std::span<const BatchRun>(deep_runs_) : lanes_.runs(0))
       if (run.is_shared) {
@@ -84,6 +86,7 @@ class ManifoldSolver {
         team_.for_each(run.first, run.last, contacts_of_thread / kernels_.lanes,
                        [&](std::size_t from, std::size_t to) { apply(pass, {from, to}); });
       }
+    heavy_.gather(states_.data(), copies());
   }
   /// Likewise for the contacts of groups.
   void sweep_groups(ManifoldPass pass) {
@@ -204,8 +207,12 @@ class ManifoldSolver {
   void colour(Bodies bodies, const SweptContacts<Real, Dim>& contacts, const IslandGroups& groups) {
     const std::size_t count = contacts.which.size(), lanes = kernels_.lanes;
     const auto head = [&](std::size_t k) -> const ContactHead& { return contacts.heads[contacts.which[k]]; };
+    heavy_.find(std::span<const RigidBody<Real, Dim>>(bodies), count, head,
+                [&](std::uint32_t i) { return groups.of(i) == 0; });
     coloured_.resize(count), group_of_.resize(groups.size() > 1 ? count : 0);
-    const auto mover = [&](std::uint32_t i) { return bodies[i].is_fixed() ? ColouredContact::none : i; };
+    const auto mover = [&](std::uint32_t i) {
+      return bodies[i].is_fixed() || heavy_.is_heavy(i) ? ColouredContact::none : i;
+    };
     for (std::size_t k = 0; k < count; ++k) coloured_[k] = {mover(head(k).a), mover(head(k).b), head(k).points};
     for (std::size_t k = 0; k < group_of_.size(); ++k)
       group_of_[k] = groups.of(bodies[head(k).a].is_fixed() ? head(k).b : head(k).a);
@@ -227,7 +234,8 @@ class ManifoldSolver {
   /// Behind them, one that never moves for lanes without a contact, for each group one for lanes without a mover, and
   /// the copies of heavy bodies.
   void take_bodies(Bodies bodies) {
-    const std::size_t size = bodies.size() + 1 + groups_;
+    first_copy_ = bodies.size() + 1 + groups_;
+    const std::size_t size = first_copy_ + heavy_.copied().size();
     states_.resize(size), has_other_mass_.resize(size), inertias_.resize(bodies.size());
     angles_.assign(Dim == 2 ? size : 0, Real(0));
     std::fill(states_.begin() + static_cast<std::ptrdiff_t>(bodies.size()), states_.end(), SolverState<Real, Dim>{});
@@ -242,7 +250,10 @@ class ManifoldSolver {
         states_[i] = state, inertias_[i] = inertia;
       }
     });
+    for (std::size_t n = 0; n < heavy_.copied().size(); ++n)
+      has_other_mass_[first_copy_ + n] = has_other_mass_[heavy_.copied()[n]];
   }
+  [[nodiscard]] SolverState<Real, Dim>* copies() { return states_.data() + first_copy_; }
   /// The contacts of a batch are anywhere in a list that may be larger than the caches.
   void prefetch_contacts(std::size_t batch, const SweptContacts<Real, Dim>& contacts) const {
     for_each_lane(batch, [&](std::size_t, std::uint32_t member) {
@@ -300,8 +311,10 @@ class ManifoldSolver {
       head.points = std::max(head.points, static_cast<std::uint8_t>(found.contact.size));
       head.is_a_fixed |= coloured_[member].a == ColouredContact::none;
       head.is_b_fixed |= coloured_[member].b == ColouredContact::none;
-      a_[batch * kernels_.lanes + lane] = found.a;
-      b_[batch * kernels_.lanes + lane] = found.b;
+      const std::uint32_t copy_of_a = heavy_.copy_of_a(member), copy_of_b = heavy_.copy_of_b(member);
+      const auto first_copy = static_cast<std::uint32_t>(first_copy_);
+      a_[batch * kernels_.lanes + lane] = copy_of_a == heavy_.none ? found.a : first_copy + copy_of_a;
+      b_[batch * kernels_.lanes + lane] = copy_of_b == heavy_.none ? found.b : first_copy + copy_of_b;
       head.is_round |= found.contact.rounding_a + found.contact.rounding_b > Real(0);
       fill_lane(batch, lane, found.contact, inertias_[found.a], inertias_[found.b]);
       held_in_[contacts.which[member]] = HeldIn::lane;
@@ -392,6 +405,8 @@ class ManifoldSolver {
   SolverStates<Real, Dim> states_;  // of all bodies, and spare ones
   std::vector<Real> angles_;
   std::vector<ColouredContact> coloured_;
+  HeavyBodies<Real, Dim> heavy_;
+  std::size_t first_copy_ = 0;  // of them, among the states
   ContactColours colours_;
   LanesOfColours lanes_;
   LargeArray<Line> values_;  // see manifold_layout.hpp
