@@ -114,10 +114,28 @@ class SortedBounds {
     }
     return lengths / std::max(last - first, lengths / static_cast<Real>(all.size())) + undefined;
   }
+  /// What lies evenly is nearly in order once it is in as many equal strips as there are bounds.
   void sort_anew(std::span<const Bounds<Real, Dim>> all) {
+    if (put_in_strips(all) && sort_on(all)) return;
     std::ranges::sort(order_, [&](std::uint32_t i, std::uint32_t j) {
       return all[i].lower[axis_] != all[j].lower[axis_] ? all[i].lower[axis_] < all[j].lower[axis_] : i < j;
     });
+  }
+  /// By counting. False where they all begin at one place.
+  [[nodiscard]] bool put_in_strips(std::span<const Bounds<Real, Dim>> all) {
+    Real first = all[0].lower[axis_], last = first;
+    for (const Bounds<Real, Dim>& box : all)
+      first = std::min(first, box.lower[axis_]), last = std::max(last, box.lower[axis_]);
+    const Real per_length = static_cast<Real>(all.size() - 1) / (last - first);
+    if (!(last > first) || !(per_length < std::numeric_limits<Real>::infinity())) return false;
+    const auto strip = [&](std::size_t i) {
+      return std::min(static_cast<std::size_t>((all[i].lower[axis_] - first) * per_length), all.size() - 1);
+    };
+    std::vector<std::uint32_t> next(all.size() + 1);
+    for (std::size_t i = 0; i < all.size(); ++i) ++next[strip(i) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::uint32_t i = 0; i < all.size(); ++i) order_[next[strip(i)]++] = i;
+    return true;
   }
   /// By insertion. False where too many are elsewhere now.
   [[nodiscard]] bool sort_on(std::span<const Bounds<Real, Dim>> all) {

@@ -2,6 +2,7 @@
 // first touches something. It keeps its velocity, and the next step begins with the contact.
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -68,26 +69,27 @@ class StoppingTimes {
   StoppingTimes(ThreadTeam& team, const World<Real, Dim>& world, RigidPairs<Real, Dim>& pairs,
                 std::span<const PartContact<Real, Dim>> contacts, std::span<const BodyPair> joined, const Real& step,
                 std::span<const RigidBody<Real, Dim>> bodies)
-      : world_(world),
+      : team_(team),
+        world_(world),
         pairs_(pairs),
         contacts_(contacts),
         joined_(joined),
         step_(step),
         bodies_(bodies),
         stops_(world.size(), {step}),
-        is_fast_(pairs.parts().size()) {
-    team.for_each(0, is_fast_.size(), 64, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i) is_fast_[i] = moves_far(pairs.parts()[i]);
+        ways_(pairs.parts().size()) {
+    team.for_each(0, ways_.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) ways_[i] = kind_of_way(pairs.parts()[i]);
     });
-    for (std::uint32_t i = 0; i < is_fast_.size(); ++i) {
-      if (!is_fast_[i]) continue;
-      if (can_pass_movers(pairs.parts()[i])) passing_.push_back(static_cast<std::uint32_t>(fast_.size()));
-      passing_slow_ += can_pass_slow(pairs.parts()[i]) ? 1 : 0;
+    for (std::uint32_t i = 0; i < ways_.size(); ++i) {
+      if (ways_[i] == Way::passes_nothing) continue;
+      if (ways_[i] >= Way::passes_movers) passing_.push_back(static_cast<std::uint32_t>(fast_.size()));
+      passing_slow_ += ways_[i] >= Way::passes_slow ? 1 : 0;
       fast_.push_back(i);
     }
     if (!fast_.empty()) pairs.find_still(bodies);
-    if (passing_slow_ * is_fast_.size() > most_tests) pairs.update_tree();
-    if (may_stop()) find_near(team);
+    if (passing_slow_ * ways_.size() > most_tests) pairs.update_tree();
+    if (may_stop()) find_near();
   }
 
   [[nodiscard]] const std::vector<Stop<Real>>& stops() const { return stops_; }
@@ -98,7 +100,7 @@ class StoppingTimes {
   }
   /// Whether a part moves so far that it might pass through something.
   [[nodiscard]] bool is_fast(const RigidPart<Real, Dim>& part) const {
-    return is_fast_[static_cast<std::size_t>(&part - pairs_.parts().data())] != 0;
+    return ways_[static_cast<std::size_t>(&part - pairs_.parts().data())] != Way::passes_nothing;
   }
   /// Stops fast parts at their first contacts with what they do not touch yet.
   void find_first_contacts() {
@@ -109,21 +111,62 @@ class StoppingTimes {
       find_first_contact(pairs_.parts()[i], {first, near});
     }
   }
-  /// Stops where a contact of the beginning of the step becomes deep: the body turns about its first point into the
-  /// other one.
+  /// Stops where contacts of the beginning of the step become deep.
+  void find_depths() {
+    const auto deepens = collected<std::uint32_t>(contacts_.size(), [this](std::size_t k, auto& list) {
+      if (may_become_deep(contacts_[k])) list.push_back(static_cast<std::uint32_t>(k));
+    });
+    for (const std::uint32_t k : deepens) find_depth(contacts_[k]);
+  }
+
+ private:
+  /// How far a part moves in the step: what a kind can do, those behind it can as well.
+  enum class Way : std::uint8_t {
+    passes_nothing,
+    passes_still,   // far enough that it may pass through what does not move
+    passes_movers,  // through another one that moves as far
+    passes_slow     // through one that moves, and is not fast: the way of that is at most half its inner radius
+  };
+  /// Of two parts of which neither has a way of more than its inner radius, the difference of both is at most the sum
+  /// of these, see `may_pass`. The factor is room for rounding.
+  [[nodiscard]] Way kind_of_way(const RigidPart<Real, Dim>& part) const {
+    const RigidBody<Real, Dim>& body = bodies_[part.body];
+    if (body.is_fixed() || world_.traits(part.body).is_sensor) return Way::passes_nothing;
+    const Real shift = length(Vector<Real, Dim>(body.x - body.x_before));
+    if (!(shift + turn(part) > part.inner_radius / 2)) return Way::passes_nothing;
+    constexpr Real room = Real(0.999);
+    if (shift > room * (part.inner_radius + pairs_.least_inner_radius() / 2)) return Way::passes_slow;
+    return shift > room * part.inner_radius ? Way::passes_movers : Way::passes_still;
+  }
+  /// What act(k, list) appends for k below `count`, in the order of k; it is called at once by several threads.
+  template <class Entry, class Act>
+  [[nodiscard]] std::vector<Entry> collected(std::size_t count, Act&& act) const {
+    std::vector<std::vector<Entry>> lists(std::clamp<std::size_t>(count / 128, 1, 256));
+    team_.share(lists.size(), [&](std::size_t n) {
+      for (std::size_t k = count * n / lists.size(); k < count * (n + 1) / lists.size(); ++k) act(k, lists[n]);
+    });
+    std::vector<Entry> all;
+    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+    return all;
+  }
+  [[nodiscard]] bool may_become_deep(const PartContact<Real, Dim>& found) const {
+    if (found.contact.size == 0) return false;
+    const auto parts = pairs_.parts();
+    const RigidPart<Real, Dim>& a = parts[found.parts.a];
+    if (found.parts.b >= parts.size()) return is_fast(a);
+    const RigidPart<Real, Dim>& b = parts[found.parts.b];
+    return (is_fast(a) || is_fast(b)) && may_pass(a, b);
+  }
+  /// The body turns about the first point of a contact into the other one.
   void find_depth(const PartContact<Real, Dim>& found) {
     const auto parts = pairs_.parts();
     const bool is_wall = found.parts.b >= parts.size();
     const RigidPart<Real, Dim>& a = parts[found.parts.a];
     const bool is_a_fast = is_fast(a), is_b_fast = !is_wall && is_fast(parts[found.parts.b]);
-    if (!is_a_fast && !is_b_fast) return;
-    if (!is_wall && !may_pass(a, parts[found.parts.b])) return;
     const Real time = is_wall ? time_in_wall(found, a) : time_in_part(found, a, parts[found.parts.b]);
     if (is_a_fast) stop(found.a, time, is_wall ? Stop<Real>::nobody : found.b);
     if (is_b_fast) stop(found.b, time, found.a);
   }
-
- private:
   [[nodiscard]] bool collide(std::uint32_t i, std::uint32_t j) const {
     return world_.collide(i, j) && !std::ranges::binary_search(joined_, BodyPair(std::min(i, j), std::max(i, j)));
   }
@@ -131,7 +174,7 @@ class StoppingTimes {
   [[nodiscard]] Bounds<Real, Dim> swept_by(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
     return grown(united(pairs_.bounds_at(part, part.pose(before(body))), pairs_.bounds_at(part, part.pose(body))),
-                 std::min(way(part), part.reach));
+                 std::min(length(Vector<Real, Dim>(body.x - body.x_before)) + turn(part), part.reach));
   }
   void find_first_contact(const RigidPart<Real, Dim>& part, std::span<const PartPair> near) {
     if (near.empty() && world_.meshes().empty() && world_.walls().empty()) return;
@@ -155,50 +198,63 @@ class StoppingTimes {
   /// ones on their ways, and others where the step began, with the margin of contacts. The rooms of the pairs are
   /// larger by what has been before, and their tree has an order of its own: a run that goes on from a snapshot has
   /// others.
-  void find_near(ThreadTeam& team) {
+  void find_near() {
     if (passing_.empty() && pairs_.still().empty()) return;
     swept_.resize(fast_.size());
-    team.for_each(0, fast_.size(), 64, [&](std::size_t from, std::size_t to) {
+    team_.for_each(0, fast_.size(), 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k) swept_[k] = swept_by(pairs_.parts()[fast_[k]]);
     });
+    near_ = collected<PartPair>(fast_.size(), [this](std::size_t k, auto& list) { find_near_still(k, list); });
     find_near_fast();
-    for (std::uint32_t k = 0; k < fast_.size(); ++k) {
-      const auto meet = [&](std::uint32_t j) {
-        if (is_fast_[j] || !matters(fast_[k], j)) return;
-        const RigidPart<Real, Dim>& part = pairs_.parts()[j];
-        if (overlap(swept_[k], pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_)))
-          near_.push_back({fast_[k], j});
-      };
-      if (passing_slow_ > 0 && can_pass_slow(pairs_.parts()[fast_[k]])) {
-        pairs_.for_each_overlap(swept_[k], meet);
-      } else if (!pairs_.still().empty()) {
-        pairs_.for_each_still(swept_[k], meet);
-      }
-    }
     std::ranges::sort(near_);
+  }
+  void find_near_still(std::size_t k, std::vector<PartPair>& near) const {
+    const auto meet = [&](std::uint32_t j) {
+      if (ways_[j] != Way::passes_nothing || !matters(fast_[k], j)) return;
+      const RigidPart<Real, Dim>& part = pairs_.parts()[j];
+      if (overlap(swept_[k], pairs_.bounds_of_contacts(part, before(bodies_[part.body]), step_)))
+        near.push_back({fast_[k], j});
+    };
+    if (ways_[fast_[k]] >= Way::passes_slow) {
+      pairs_.for_each_overlap(swept_[k], meet);
+    } else if (!pairs_.still().empty()) {
+      pairs_.for_each_still(swept_[k], meet);
+    }
   }
   /// Pairs of fast parts, of which one can pass others that move, twice.
   void find_near_fast() {
     if (passing_.empty()) return;
     std::vector<std::uint8_t> passes(fast_.size());
     for (const std::uint32_t k : passing_) passes[k] = 1;
-    const auto meet = [&](std::uint32_t k, std::uint32_t n) {
+    const auto meet_in = [&](std::vector<PartPair>& near, std::uint32_t k, std::uint32_t n) {
       if ((passes[k] | passes[n]) == 0 || !matters(fast_[k], fast_[n])) return;
-      near_.push_back({fast_[k], fast_[n]}), near_.push_back({fast_[n], fast_[k]});
+      near.push_back({fast_[k], fast_[n]}), near.push_back({fast_[n], fast_[k]});
     };
     if (passing_.size() * fast_.size() <= most_tests) {
       for (const std::uint32_t k : passing_)
         for (std::uint32_t n = 0; n < swept_.size(); ++n)
-          if ((passes[n] == 0 || n > k) && !are_apart(swept_[k], swept_[n])) meet(k, n);
+          if ((passes[n] == 0 || n > k) && !are_apart(swept_[k], swept_[n])) meet_in(near_, k, n);
       return;
     }
+    if (sweep(meet_in)) return;
+    BoundsTree<Real, Dim>(swept_).for_each_pair([&](std::uint32_t k, std::uint32_t n) { meet_in(near_, k, n); });
+  }
+  /// The same where it is faster to go along an axis; else nothing, and false.
+  template <class MeetIn>
+  [[nodiscard]] bool sweep(MeetIn&& meet_in) {
     using Sorted = SortedBounds<Real, Dim>;
     Sorted sorted;
-    if (sorted.sort(swept_, Sorted::most_compared) &&
-        sorted.for_each_pair(0, sorted.size(), Sorted::most_of(sorted.size()), meet))
-      return;
-    near_.clear();
-    BoundsTree<Real, Dim>(swept_).for_each_pair(meet);
+    if (!sorted.sort(swept_, Sorted::most_compared)) return false;
+    std::vector<std::vector<PartPair>> lists(std::clamp<std::size_t>(sorted.size() / 64, 1, 256));
+    std::atomic<bool> is_slow = false;
+    team_.share(lists.size(), [&](std::size_t block) {
+      const std::size_t from = sorted.size() * block / lists.size(), to = sorted.size() * (block + 1) / lists.size();
+      const auto meet = [&](std::uint32_t k, std::uint32_t n) { meet_in(lists[block], k, n); };
+      if (!sorted.for_each_pair(from, to, Sorted::most_of(to - from), meet)) is_slow = true;
+    });
+    if (is_slow) return false;
+    for (const auto& list : lists) near_.insert(near_.end(), list.begin(), list.end());
+    return true;
   }
   [[nodiscard]] bool matters(std::uint32_t i, std::uint32_t j) const {
     const auto parts = pairs_.parts();
@@ -244,19 +300,6 @@ class StoppingTimes {
     const Vector<Real, Dim> of_b = bodies_[b.body].x - bodies_[b.body].x_before;
     return length(Vector<Real, Dim>(of_a - of_b)) > a.inner_radius + b.inner_radius;
   }
-  /// Whether the way of a part is long enough that it may pass another one that moves, too: of two of which neither has
-  /// such a way, the difference of both ways is at most the sum of their inner radii, see `may_pass`. The factor is
-  /// room for rounding.
-  [[nodiscard]] bool can_pass_movers(const RigidPart<Real, Dim>& part) const {
-    const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return length(Vector<Real, Dim>(body.x - body.x_before)) > Real(0.999) * part.inner_radius;
-  }
-  /// Whether it may pass one that moves and is not fast: the way of that is at most half its inner radius.
-  [[nodiscard]] bool can_pass_slow(const RigidPart<Real, Dim>& part) const {
-    const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return length(Vector<Real, Dim>(body.x - body.x_before)) >
-           Real(0.999) * (part.inner_radius + pairs_.least_inner_radius() / 2);
-  }
   /// The solver has taken care of those.
   [[nodiscard]] bool has_contact(const RigidPart<Real, Dim>& a, const RigidPart<Real, Dim>& b) const {
     const auto* const first = pairs_.parts().data();
@@ -272,14 +315,10 @@ class StoppingTimes {
     const auto at = std::ranges::lower_bound(contacts_, pair, {}, &PartContact<Real, Dim>::parts);
     return at != contacts_.end() && at->parts == pair && at->contact.size > 0;
   }
-  [[nodiscard]] Real way(const RigidPart<Real, Dim>& part) const {
+  /// How far the turn of its body moves a part at most.
+  [[nodiscard]] Real turn(const RigidPart<Real, Dim>& part) const {
     const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return length(Vector<Real, Dim>(body.x - body.x_before)) +
-           length(spin_between(body.orientation_before, body.orientation, step_)) * step_ * part.reach;
-  }
-  [[nodiscard]] bool moves_far(const RigidPart<Real, Dim>& part) const {
-    const RigidBody<Real, Dim>& body = bodies_[part.body];
-    return !body.is_fixed() && way(part) > part.inner_radius / 2 && !world_.traits(part.body).is_sensor;
+    return length(spin_between(body.orientation_before, body.orientation, step_)) * step_ * part.reach;
   }
   void stop(std::uint32_t body, const Real& time, std::uint32_t at = Stop<Real>::nobody) {
     if (time < stops_[body].time) stops_[body] = {time, at};
@@ -287,6 +326,7 @@ class StoppingTimes {
 
   static constexpr std::size_t most_tests = 1 << 16;  // of bounds, one by one: some 0.1 ms
 
+  ThreadTeam& team_;
   const World<Real, Dim>& world_;
   const RigidPairs<Real, Dim>& pairs_;
   std::span<const PartContact<Real, Dim>> contacts_;
@@ -294,7 +334,7 @@ class StoppingTimes {
   Real step_;
   std::span<const RigidBody<Real, Dim>> bodies_;
   std::vector<Stop<Real>> stops_;
-  std::vector<std::uint8_t> is_fast_;     // of each part
+  std::vector<Way> ways_;                 // of each part
   std::vector<std::uint32_t> fast_;       // the parts that are
   std::size_t passing_slow_ = 0;          // how many of them can pass slow ones
   std::vector<std::uint32_t> passing_;    // the places there of those that can pass others that move
@@ -332,8 +372,7 @@ std::size_t stop_fast_bodies(ThreadTeam& team, const World<Real, Dim>& world, Ri
   StoppingTimes<Real, Dim> times(team, world, pairs, contacts, joined, step, bodies);
   if (!times.may_stop()) return 0;
   times.find_first_contacts();
-  for (const PartContact<Real, Dim>& found : contacts)
-    if (found.contact.size > 0) times.find_depth(found);
+  times.find_depths();
   std::size_t stopped = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
     const Stop<Real> stop = times.stops()[i];
