@@ -37,7 +37,7 @@ struct BoxPair {
 /// The axis of greatest distance, or of least overlap, among those of a kind.
 /// @{
 template <class Real, int Dim>
-[[nodiscard]] SeparatingAxis<Real, Dim> axis_of_faces_of_a(const BoxPair<Real, Dim>& boxes) {
+[[nodiscard, gnu::always_inline]] inline SeparatingAxis<Real, Dim> axis_of_faces_of_a(const BoxPair<Real, Dim>& boxes) {
   SeparatingAxis<Real, Dim> best;
   const auto& [half_a, half_b, pose, size] = boxes;
   for (std::size_t i = 0; i < Dim; ++i) {
@@ -52,7 +52,7 @@ template <class Real, int Dim>
   return best;
 }
 template <class Real, int Dim>
-[[nodiscard]] SeparatingAxis<Real, Dim> axis_of_faces_of_b(const BoxPair<Real, Dim>& boxes) {
+[[nodiscard, gnu::always_inline]] inline SeparatingAxis<Real, Dim> axis_of_faces_of_b(const BoxPair<Real, Dim>& boxes) {
   SeparatingAxis<Real, Dim> best;
   const auto& [half_a, half_b, pose, size] = boxes;
   for (std::size_t j = 0; j < Dim; ++j) {
@@ -125,8 +125,9 @@ struct BoxSide {
 
 /// The side whose normal is nearest to the direction, which is given in the frame of the box.
 template <class Real>
-[[nodiscard]] BoxSide<Real> facing_side(const Vector<Real, 2>& half, const Vector<Real, 2>& direction,
-                                        const Pose<Real, 2>& pose) {
+[[nodiscard, gnu::always_inline]] inline BoxSide<Real> facing_side(const Vector<Real, 2>& half,
+                                                                   const Vector<Real, 2>& direction,
+                                                                   const Pose<Real, 2>& pose) {
   const std::size_t axis = std::abs(direction[0]) > std::abs(direction[1]) ? 0 : 1;
   const bool is_positive = direction[axis] > Real(0);
   const Vector<Real, 2> normal = pose.axes[axis] * (is_positive ? Real(1) : Real(-1));
@@ -138,8 +139,10 @@ template <class Real>
 /// middle between both. Numbers of the second side's corners have the bit `of_second`, those of the first `of_first`.
 /// Empty where there is no such part, or where the second is seen from its end.
 template <class Real>
-[[nodiscard]] Manifold<Real, 2> common_part(const BoxSide<Real>& first, const BoxSide<Real>& second,
-                                            std::uint32_t of_first, std::uint32_t of_second) {
+[[nodiscard, gnu::always_inline]] inline Manifold<Real, 2> common_part(const BoxSide<Real>& first,
+                                                                       const BoxSide<Real>& second,
+                                                                       std::uint32_t of_first,
+                                                                       std::uint32_t of_second) {
   Manifold<Real, 2> common;
   const Vector<Real, 2> along = first.tangent(), way = second.tangent() * second.half;
   const Vector<Real, 2> between = second.middle - first.middle;

@@ -378,7 +378,7 @@ class RigidPairs {
   }
 
  private:
-  static constexpr Real part_of_margin = Real(0.25);
+  static constexpr Real part_of_margin = Real(0.125);
 
   std::vector<RigidPart<Real, Dim>> parts_;
   std::vector<std::shared_ptr<const Solid<Real, Dim>>> solids_;       // of each body; the parts refer to them
