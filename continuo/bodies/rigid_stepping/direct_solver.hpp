@@ -55,16 +55,18 @@ class DirectSolver {
   }
 
   /// Takes the masses and the velocities of the bodies of the island: without constraints, or, for the second pass,
-  /// those after the first.
+  /// those after the first. Moments of inertia are those of now, or of the beginning of the step: then rows stay valid.
   template <class Real>
-  void load_bodies(std::span<const std::uint32_t> bodies, std::span<const RigidBody<Real, Dim>> all, RowPass pass) {
+  void load_bodies(std::span<const std::uint32_t> bodies, std::span<const RigidBody<Real, Dim>> all, RowPass pass,
+                   bool is_inertia_of_now) {
     free_.resize(bodies.size()), mass_.resize(bodies.size()), inverse_mass_.resize(bodies.size());
     inverse_inertia_.resize(bodies.size());
     greatest_mass_ = greatest_inertia_ = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const RigidBody<Real, Dim>& body = all[bodies[i]];
       free_[i] = velocity_of(body);
-      const Matrix<double, size_of_spin> inertia = inertia_of(body);
+      const Matrix<double, size_of_spin> inertia =
+          inertia_of(body, is_inertia_of_now ? body.orientation : body.orientation_before);
       mass_[i] = mass_matrix(body, inertia);
       inverse_mass_[i] = static_cast<double>(body.inverse_mass);
       inverse_inertia_[i] = inverse(inertia);
@@ -133,7 +135,7 @@ class DirectSolver {
   [[nodiscard]] bool solve(RowPass pass) {
     pass_ = pass;
     const std::vector<double> before = impulses();
-    if (pass == RowPass::push) before_push_ = before;
+    if (pass == RowPass::push && starts_.empty()) before_push_ = before;
     if (starts_.size() != before.size()) starts_ = before;
     const bool is_found = newton();
     starts_.clear();
@@ -202,13 +204,13 @@ class DirectSolver {
     for (std::size_t k = 0; k < std::size_t(size_of_spin); ++k) v[Dim + k] = static_cast<double>(body.spin[k]);
     return v;
   }
-  /// As it was at the beginning of the step. Not the inverse of its inverse in the precision of the body: of the least
+  /// Not the inverse of its inverse in the precision of the body: of the least
   /// moment of a needle that would have no digit in single precision.
   template <class Real>
-  [[nodiscard]] static Matrix<double, size_of_spin> inertia_of(const RigidBody<Real, Dim>& body) {
+  [[nodiscard]] static Matrix<double, size_of_spin> inertia_of(const RigidBody<Real, Dim>& body,
+                                                               const Orientation<Real, Dim>& now) {
     Orientation<double, Dim> orientation;
-    for (std::size_t k = 0; k < orientation.components.size(); ++k)
-      orientation[k] = static_cast<double>(body.orientation_before[k]);
+    for (std::size_t k = 0; k < orientation.components.size(); ++k) orientation[k] = static_cast<double>(now[k]);
     Matrix<double, size_of_spin> own;
     for (std::size_t j = 0; j < std::size_t(size_of_spin); ++j)
       for (std::size_t i = 0; i < std::size_t(size_of_spin); ++i) own[j][i] = static_cast<double>(body.inertia[j][i]);

@@ -26,7 +26,7 @@ class IslandSolver {
     const std::size_t bodies_before = analysed_bodies_, most_before = most_updates_;
     pairs_before_.swap(pairs_);
     pairs_.clear();
-    do_rows_change_ = contacts_turn;
+    has_joints_ = false;
     std::size_t rows = 0;
     for (const std::uint32_t k : blocks_) {
       const RowBlock& block = all.blocks[k];
@@ -34,9 +34,10 @@ class IslandSolver {
         return bodies[body].is_fixed() ? DirectSolver<Dim>::fixed : islands.place(body);
       };
       pairs_.push_back({place(block.a), place(block.b)});
-      do_rows_change_ |= block.points == 0;
+      has_joints_ |= block.points == 0;
       rows += block.rows;
     }
+    do_rows_change_ = has_joints_ || contacts_turn;
     // A product of blocks costs as much as some ten rows of a sweep, of which a step has two for each substep.
     analysed_bodies_ = members_.size(), most_updates_ = rows / 2 + 100;
     // The same graph as in the last step has the same pattern.
@@ -51,7 +52,7 @@ class IslandSolver {
   /// Removes what the rows forbid from the velocities after the forces of a substep have acted.
   void push(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::push);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::push, has_joints_);
       if (do_rows_change_ || !is_loaded_) {
         direct_.template load_rows<Real>(blocks_, all, bodies);
       } else {
@@ -66,11 +67,17 @@ class IslandSolver {
     begin_with_impulses(all, bodies);
     sweep_all(RowPass::push, all, bodies);
   }
+  /// The same for other biases of the same rows, from where the last call has begun. False where that fails.
+  [[nodiscard]] bool push_again(Constraints<Real, Dim>& all, Bodies bodies) {
+    direct_.template load_biases<Real>(blocks_, all);
+    direct_.begin_as_before_push();
+    return solve_directly(RowPass::push, all, bodies);
+  }
   /// Removes the velocity that correcting positions gave.
   void relax(Constraints<Real, Dim>& all, Bodies bodies) {
     if (!is_direct_) return sweep_all(RowPass::relax, all, bodies);
     if (do_rows_change_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, has_joints_);
       direct_.template load_rows<Real>(blocks_, all, bodies);
       direct_.remove_impulses();
     } else {
@@ -85,7 +92,7 @@ class IslandSolver {
   /// Adds what impacts give: the rows begin without impulses.
   void rebound(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, has_joints_);
       direct_.template load_rows<Real>(blocks_, all, bodies);
       if (solve_directly(RowPass::relax, all, bodies)) return;
     }
@@ -155,6 +162,7 @@ class IslandSolver {
   std::vector<typename DirectSolver<Dim>::Pair> pairs_, pairs_before_;
   std::size_t analysed_bodies_ = 0, most_updates_ = 0;
   bool is_thin_ = false;  // whether the graph can be factorized
+  bool has_joints_ = false;
   bool is_direct_ = false, do_rows_change_ = false, is_loaded_ = false;
   int sweeps_ = 1;
 };

@@ -22,6 +22,7 @@
 #include <continuo/bodies/rigid_stepping/energy_bounds.hpp>
 #include <continuo/bodies/rigid_stepping/island_solver.hpp>
 #include <continuo/bodies/rigid_stepping/joint_rows.hpp>
+#include <continuo/bodies/rigid_stepping/jointed_islands.hpp>
 #include <continuo/bodies/rigid_stepping/manifold_solver.hpp>
 #include <continuo/bodies/rigid_stepping/point_joint_solver.hpp>
 #include <continuo/bodies/rigid_stepping/rigid_contacts.hpp>
@@ -104,6 +105,7 @@ class RigidStepper {
     gather_rows();
     begin_islands();
     begin_swept();
+    find_jointed();
     const Real h = substep();
     if (has_groups()) advance_groups();
     for (int k = 0; k < options_.substeps; ++k) move_substep(world_.time + h * static_cast<Real>(k), h);
@@ -382,11 +384,13 @@ class RigidStepper {
     }
     contact_rows_ = rows_.rows.size();
     turning_.clear();
-    std::ranges::copy_if(scalar_, std::back_inserter(turning_), [this](std::uint32_t k) {
-      const auto turns = [this](std::uint32_t i) { return i < turns_far_.size() && turns_far_[i] != 0; };
-      return turns(rows_.blocks[k].a) || turns(rows_.blocks[k].b);
-    });
+    std::ranges::copy_if(scalar_, std::back_inserter(turning_), [this](std::uint32_t k) { return turns_far(k); });
     gather_joints();
+  }
+  /// Whether a body of a block turns far in the step.
+  [[nodiscard]] bool turns_far(std::uint32_t block) const {
+    const auto turns = [this](std::uint32_t i) { return i < turns_far_.size() && turns_far_[i] != 0; };
+    return turns(rows_.blocks[block].a) || turns(rows_.blocks[block].b);
   }
   [[nodiscard]] bool pushes(const ContactHead& head, std::uint32_t contact) const {
     if (head.b >= world_.size()) return !world_.has_traits() || !world_.traits(head.a).is_sensor;
@@ -568,20 +572,23 @@ class RigidStepper {
     note_spin_energies();
     accelerate(now, h);
     for (const std::uint32_t i : joined_) take_state(i);
-    if (has_joint_rows()) gather_joints();
+    if (are_joints_apart_) gather_joints();
     aim_contacts();
     note_free_velocities();
-    for_each_island([this](std::size_t k) {
+    for_each_island([this, h](std::size_t k) {
+      if (is_jointed_[k] != 0) return move_jointed(k, h);
       if (!is_swept_[k]) solvers_[k].push(rows_, bodies_);
       limit_energy(k, RowPass::push);
     });
-    for (const std::uint32_t i : apart_from_lanes_) move(i, h);
+    for (const std::uint32_t i : apart_from_lanes_)
+      if (is_in_jointed_[i] == 0) move(i, h);
     if (has_lanes()) push_swept(h);
     keep_joints();
     for (const std::uint32_t i : joined_) take_state(i);
-    if (has_joint_rows()) gather_joints();  // velocities are to be along where the joints are now
+    if (are_joints_apart_) gather_joints();  // velocities are to be along where the joints are now
     aim_contacts();
     for_each_island([this](std::size_t k) {
+      if (is_jointed_[k] != 0) return;
       if (!is_swept_[k]) solvers_[k].relax(rows_, bodies_);
       limit_energy(k, RowPass::relax);
     });
@@ -591,6 +598,42 @@ class RigidStepper {
     note_greatest_impulses();
     keep_contacts();
     keep_joints();  // without what corrects positions: where that contradicts itself it would add up
+  }
+  /// Which islands move by their joints (jointed_islands.hpp): those that are solved directly, and that nothing drives
+  /// or locks.
+  void find_jointed() {
+    is_jointed_.assign(islands_.size(), 0), is_in_jointed_.assign(world_.size(), 0);
+    for (std::size_t k = 0; k < islands_.size(); ++k) {
+      if (is_swept_[k] || !has_joints(k) || !solvers_[k].is_direct()) continue;
+      const bool is_apart = std::ranges::any_of(islands_.blocks(k), [this](std::uint32_t block) {
+        return is_driven(rows_.blocks[block].a) || is_driven(rows_.blocks[block].b) ||
+               block >= active_.size() + acting_joints_.size();
+      });
+      const bool only_pulls = !is_apart && std::ranges::all_of(joints_of(k), [this](std::uint32_t block) {
+        return acting_joints_[block - active_.size()].joint->kind == JointKind::pull;
+      });
+      if (is_apart || only_pulls) continue;
+      is_jointed_[k] = 1;
+      for (const std::uint32_t i : islands_.bodies(k)) is_in_jointed_[i] = 1;
+    }
+    are_joints_apart_ = false;
+    for (std::size_t block = active_.size(); block < rows_.blocks.size(); ++block) {
+      const auto is_in = [this](std::uint32_t i) { return i < world_.size() && is_in_jointed_[i] != 0; };
+      if (rows_.blocks[block].rows > 0)
+        are_joints_apart_ |= !is_in(rows_.blocks[block].a) && !is_in(rows_.blocks[block].b);
+    }
+  }
+  void move_jointed(std::size_t k, const Real& h) {
+    std::vector<JointOfIsland<Real, Dim>> joints;
+    for (const std::uint32_t block : joints_of(k))
+      if (block < active_.size() + acting_joints_.size())
+        joints.push_back({acting_joints_[block - active_.size()].joint, block});
+    JointedIsland<Real, Dim> island(islands_.bodies(k), islands_.blocks(k), std::move(joints), rows_, bodies_,
+                                    solvers_[k], options_.fastest_push);
+    const auto contacts = islands_.blocks(k).first(islands_.blocks(k).size() - joints_of(k).size());
+    island.advance(
+        h, acceleration_, free_, [&](const Real& part) { aim_contacts(contacts, h / part); },
+        [&] { note_greatest_impulses(contacts); }, [&] { return given_energy(k); });
   }
   /// Whether the kinetic energy of an island may only fall by what its contacts do.
   [[nodiscard]] bool only_loses(std::size_t island) const {
@@ -780,7 +823,7 @@ class RigidStepper {
     for (const std::uint32_t i : not_easy_) {
       RigidBody<Real, Dim>& body = bodies_[i];
       body.v += acceleration_[i] * h;
-      turn_freely(body, h);
+      is_in_jointed_[i] == 0 ? turn_freely(body, h) : void(body.lag = {});
       if (!torque.empty()) body.spin += body.inverse_inertia_now * torque[i] * h;
       if (!world_.has_traits()) continue;
       const BodyTraits<Real> traits = world_.traits(i);
@@ -806,14 +849,25 @@ class RigidStepper {
     return torque;
   }
   void aim_contacts() {
-    for (const std::uint32_t k : turning_) {
-      const auto& found = contacts_.all()[active_[k]];
-      turn_levers(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b]);
+    for (const std::uint32_t k : turning_) turn_levers(k);
+    for (const std::uint32_t k : scalar_) aim(k, hardness_[k]);
+  }
+  /// Those of an island, in a substep that is cut into so many parts.
+  void aim_contacts(std::span<const std::uint32_t> blocks, const Real& parts) {
+    for (const std::uint32_t k : blocks) {
+      if (turns_far(k)) turn_levers(k);
+      ContactHardness<Real> hardness = hardness_[k];
+      hardness.h /= parts, hardness.rate *= parts;
+      aim(k, hardness);
     }
-    for (const std::uint32_t k : scalar_) {
-      const auto& found = contacts_.all()[active_[k]];
-      aim(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b], hardness_[k]);
-    }
+  }
+  void turn_levers(std::uint32_t k) {
+    const auto& found = contacts_.all()[active_[k]];
+    continuo::turn_levers(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b]);
+  }
+  void aim(std::uint32_t k, const ContactHardness<Real>& hardness) {
+    const auto& found = contacts_.all()[active_[k]];
+    continuo::aim(found.contact, rows_.of(rows_.blocks[k]), bodies_[found.a], bodies_[found.b], hardness);
   }
   /// Keeps the impulses of a substep.
   /// @{
@@ -846,8 +900,9 @@ class RigidStepper {
     });
   }
   /// @}
-  void note_greatest_impulses() {
-    for (const std::uint32_t k : scalar_) {
+  void note_greatest_impulses() { note_greatest_impulses(scalar_); }
+  void note_greatest_impulses(std::span<const std::uint32_t> blocks) {
+    for (const std::uint32_t k : blocks) {
       auto& contact = contacts_.all()[active_[k]].contact;
       const auto rows = rows_.of(rows_.blocks[k]);
       for (std::size_t i = 0; i < contact.size; ++i)
@@ -1133,6 +1188,8 @@ class RigidStepper {
   std::vector<IslandSolver<Real, Dim>> solvers_;
   std::vector<ContactHardness<Real>> hardness_;  // of each block
   std::vector<std::uint8_t> is_alone_;           // bodies without contacts and joints
+  bool are_joints_apart_ = false;  // whether some have rows and are not in islands that move by their joints
+  std::vector<std::uint8_t> is_jointed_, is_in_jointed_;  // islands that move by their joints, and their bodies
   std::vector<V> acceleration_;
   std::vector<Real> spin_energy_;                               // of the bodies before a substep
   std::vector<BodyVelocity<Real, Dim>> free_, before_impacts_;  // after its forces have acted; at the end of the last
