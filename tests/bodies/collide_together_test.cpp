@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <span>
 #include <vector>
@@ -132,6 +133,16 @@ TEST(CollideTogether, TellWhereTheImpulsesWereNotFound) {
   EXPECT_TRUE(is_found(20, 0.5, 1000));
   EXPECT_TRUE(is_found(400, 0, 1000));
   EXPECT_FALSE(is_found(400, 0, 10));
+}
+
+// What is no number is not smaller than an error that would be too large.
+TEST(CollideTogether, TellWhereSpeedsAreNoNumbers) {
+  for (const double friction : {0.0, 0.5}) {
+    auto cluster = row_that_shrinks<2>(5, 1);
+    cluster.touch({.restitution = 0.5, .friction = friction});
+    cluster.v[2][0] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(cluster.collide()) << friction;
+  }
 }
 
 TEST(CollideTogether, EndTheExactMotionWhereTheImpulsesWereNotFound) {

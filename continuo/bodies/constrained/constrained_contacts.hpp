@@ -16,6 +16,7 @@
 #include <continuo/bodies/contacts/joint_impacts.hpp>
 #include <continuo/bodies/contacts/persistent_contacts.hpp>
 #include <continuo/bodies/contacts/touching.hpp>
+#include <continuo/bodies/event_driven/exact_engine.hpp>
 #include <continuo/bodies/exact_options.hpp>
 
 namespace continuo {
@@ -64,6 +65,8 @@ class ConstrainedContacts {
   Real left_by_steps{};      // persistent contacts touch up to this gap after time steps
   std::vector<Real> last{};  // the time of the last collision of each body
   std::vector<Lasting> lasting{};
+  Status fault{};                        // of the impacts when `resolve` was called last
+  std::vector<std::uint32_t> numbers{};  // of the bodies in the whole world, where these differ
 
   /// The greatest acceleration by forces when `resolve` was called last.
   [[nodiscard]] Real pull() const { return allowance / (contact_time * contact_time); }
@@ -80,21 +83,23 @@ class ConstrainedContacts {
   }
 
   /// Resolves the collisions of this instant among `near`, one after the other, until no two bodies approach each
-  /// other. Where this does not end, contacts that lose energy stop bouncing, and are struck together. Returns the
-  /// persistent contacts. They are the contacts that forces press together and whose bodies hardly move relative to
-  /// each other: by no more in the contact time than the forces would move them. Such bodies do not collide; normal and
-  /// friction forces keep them in contact from here on.
+  /// other. Where this does not end, contacts that lose energy stop bouncing, and are struck together; where that does
+  /// not end either, or impulses are not found, there is a `fault`. Returns the persistent contacts. They are the
+  /// contacts that forces press together and whose bodies hardly move relative to each other: by no more in the contact
+  /// time than the forces would move them. Such bodies do not collide; normal and friction forces keep them in contact
+  /// from here on.
   [[nodiscard]] PersistentContacts<Real, Dim> resolve(std::span<const Touching> near, std::span<const V> force,
                                                       std::span<const S> torque, const Journal& journal) {
     const Real acceleration = greatest_acceleration(world_, force), slow = acceleration * contact_time;
-    allowance = slow * contact_time;
+    allowance = slow * contact_time, fault = {};
     if (!(slow < never)) return {};
     std::vector<Touching> touching;
     std::ranges::copy_if(near, std::back_inserter(touching), [&](const Touching& at) { return touches(at); });
     if (touching.empty()) return {};
     const std::vector<Real> before = last;
-    for (int round = 0, most = 256; round < most; ++round)
-      if (!strike_all(touching, slow, before, round > 64, journal)) break;
+    for (int round = 0; fault && strike_all(touching, slow, before, round > 64, journal); ++round)
+      if (round >= usual_rounds && !goes_on(touching, slow, round)) break;
+    if (!fault) return {};
     if (!(slow > Real(0))) return {};
     std::vector<Touching> gentle;
     for (const Touching& at : touching)
@@ -184,6 +189,36 @@ class ConstrainedContacts {
   }
 
  private:
+  static constexpr int usual_rounds = 256, most_rounds = 10'000;
+
+  /// Whether there is to be another round after those that should have been enough. What still approaches by rounding
+  /// needs none; bodies that lose nothing, as a light one between a wall and a heavy one, may need thousands.
+  [[nodiscard]] bool goes_on(std::span<const Touching> touching, const Real& slow, int round) {
+    const Real least = std::max(slow, Real(rounded_speed() * fastest_of(touching)));
+    if (std::ranges::none_of(touching, [&](const Touching& at) { return approach_of(world_, at) > least; }))
+      return false;
+    if (round < most_rounds) return true;
+    fault = impulses_not_found(world_.time, numbers_in(touching),
+                               "they strike each other again and again; masses that differ less would end sooner");
+    return false;
+  }
+  /// By how much of the fastest speed others may be wrong.
+  [[nodiscard]] static Real rounded_speed() { return std::sqrt(std::numeric_limits<Real>::epsilon()); }
+  [[nodiscard]] Real fastest_of(std::span<const Touching> touching) const {
+    Real square(0);
+    for (const Touching& at : touching)
+      square = std::max({square, squared(world_.velocity[at.a]), squared(world_.velocity[at.b])});
+    return std::sqrt(square);
+  }
+  [[nodiscard]] std::vector<std::uint32_t> numbers_in(std::span<const Touching> touching) const {
+    std::vector<std::uint32_t> bodies;
+    for (const Touching& at : touching)
+      for (const std::uint32_t i : {at.a, at.b}) bodies.push_back(numbers.empty() ? i : numbers[i]);
+    std::ranges::sort(bodies);
+    bodies.erase(std::ranges::unique(bodies).begin(), bodies.end());
+    return bodies;
+  }
+
   /// Finds a pair among sorted contacts.
   [[nodiscard]] static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
     const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
@@ -207,7 +242,11 @@ class ConstrainedContacts {
     }
     if (!is_plastic) return is_any;
     // What is left of an approach is for the next round.
-    const std::vector<Real> impulse = strike_together<Real, Dim>(world_, plastic, slow / 8).along_normals;
+    const Real fastest = fastest_of(plastic);
+    const auto [impulse, error] = strike_together<Real, Dim>(world_, plastic, slow / 8);
+    if (!(error <= std::max(Real(slow / 8), Real(rounded_speed() * fastest))))
+      fault = impulses_not_found(world_.time, numbers_in(plastic),
+                                 "masses that differ less, fewer bodies that touch, or less friction would have some");
     for (std::size_t k = 0; k < plastic.size(); ++k)
       if (impulse[k] > Real(0)) has_struck(plastic[k], impulse[k], journal);
     return true;

@@ -62,6 +62,9 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     begin_ = world_.position;
   }
   bool is_steady() const override { return is_steady_; }
+  void set_numbers(std::span<const std::uint32_t> numbers) override {
+    contact_state_.numbers.assign(numbers.begin(), numbers.end());
+  }
   void let_go(const std::vector<bool>& leaves) override {
     std::vector<Touching> stay;
     for (const auto& one : contact_state_.lasting)
@@ -176,6 +179,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     list_candidates();
     if (const Real depth = deepest_overlap(near_now()); has_sunk(depth)) return fail(call, sunk(depth));
     if (!resolved_) resolved_ = resolve();
+    if (!contact_state_.fault) return fail(call, contact_state_.fault);
     if (!resolved_->is_found() && may_step()) {
       resolved_.reset();
       zeno_guard_.go_by_steps();
@@ -327,6 +331,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       return fail(call, cannot_continue("the path cannot be followed beyond t = " + std::to_string(integrator.t()) +
                                         ": " + std::string(to_string(integrator.outcome().ending))));
     land(integrator.system(), integrator.x(), integrator.t());
+    if (!contact_state_.fault) return fail(call, contact_state_.fault);
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     return zeno_guard_.is_in_steps() ? MotionEvent::too_many_events : MotionEvent::contact_changes;
   }

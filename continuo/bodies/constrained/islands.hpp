@@ -295,6 +295,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     options.interrupt = nullptr;  // it is tested between windows
     island.engine = constrained_motion<Real, Dim>(*island.world, options, nullptr);
     island.bodies = std::move(bodies);
+    island.engine->set_numbers(island.bodies);
     return island;
   }
   void mark(const Island& island, std::uint32_t id) {

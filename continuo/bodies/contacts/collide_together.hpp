@@ -107,7 +107,7 @@ class CollisionRound {
     const auto is_found = [&](const Real& share) {
       Real now = fastest;
       for (const Moving& one : sweeps_.movers()) now = std::max(now, length(one.v));
-      return !(sweeps_.greatest_error() > share * now);
+      return are_finite() && sweeps_.greatest_error() <= share * now;
     };
     sweep(most_sweeps);
     bool found = is_found(64 * rounding);
@@ -132,7 +132,16 @@ class CollisionRound {
       row.friction = shared_[k]->material.friction, row.has_known_press = true;
     }
     const Real least = rounding * fastest, most = std::sqrt(rounding) * fastest;
-    return !(sweeps_.sweep(least, most_sweeps) > most) || !(sweeps_.sweep(least, patience * most_sweeps) > most);
+    return are_finite() &&
+           (sweeps_.sweep(least, most_sweeps) <= most ||
+            (are_finite() && sweeps_.sweep(least, patience * most_sweeps) <= most)) &&
+           are_finite();
+  }
+
+  /// A greatest number is found without those that are none.
+  [[nodiscard]] bool are_finite() const {
+    return std::ranges::all_of(sweeps_.movers(),
+                               [](const Moving& one) { return is_finite(one.v) && is_finite(one.spin); });
   }
 
   using Moving = typename ProjectedGaussSeidel<Real, Dim>::Moving;

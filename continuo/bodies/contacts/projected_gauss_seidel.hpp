@@ -135,6 +135,12 @@ class ProjectedGaussSeidel {
     return greatest;
   }
 
+  [[nodiscard]] Real fastest() const {
+    Real square(0);
+    for (const Moving& one : movers_) square = std::max(square, squared(one.v));
+    return std::sqrt(square);
+  }
+
   [[nodiscard]] Moving& mover(std::size_t place) { return movers_[place]; }
   [[nodiscard]] const Moving& mover(std::size_t place) const { return movers_[place]; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }

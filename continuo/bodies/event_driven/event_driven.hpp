@@ -314,7 +314,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     const auto velocity_now = [this](std::uint32_t k) { return flights_.velocity_now(k); };
     if (at_once_.find_approaching(flights_, velocity_now) < 2 || are_caught(touching)) return false;
     for (const std::uint32_t k : at_once_.members()) bring(k);
-    constexpr int most_rounds = 1000;
+    constexpr int most_rounds = 1000;  // what still approaches then has its next collision at this instant as well
     for (int round = 0; round < most_rounds; ++round) {
       const auto velocity = [this](std::uint32_t k) -> const V& { return flights_.paths[k].v; };
       if (round > 0 && (at_once_.find_approaching(flights_, velocity) == 0 || are_caught(touching))) break;
@@ -399,7 +399,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     const Real speeds = std::max(Real(length(v) + length(flights_.paths[j].v)), flights_.slow);
     constexpr Real rounding = std::numeric_limits<Real>::epsilon();
     const auto [impulses, error] = simultaneous_.strike(world_, flights_, Real(rounding * speeds));
-    if (error > std::sqrt(rounding) * speeds) {
+    if (!(error <= std::sqrt(rounding) * speeds)) {
       std::vector<std::uint32_t> numbers;
       for (const std::uint32_t k : simultaneous_.members()) numbers.push_back(flights_.plans[k].number);
       give_up(std::move(numbers));

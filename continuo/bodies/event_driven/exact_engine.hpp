@@ -102,6 +102,8 @@ class ContactEngine : public ExactEngine<Real, Dim> {
   /// moves any more (`is_steady`). With infinity it does not.
   virtual void keep_within(const Real& room) = 0;
   [[nodiscard]] virtual bool is_steady() const = 0;
+  /// The numbers by which messages are to name the bodies.
+  virtual void set_numbers(std::span<const std::uint32_t> numbers) = 0;
   /// Takes over the state of contacts from another engine, whose body i has the number to[i] here, or `nowhere`.
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   virtual void take_over(const ContactEngine& other, std::span<const std::uint32_t> to) = 0;
