@@ -113,6 +113,7 @@ class RigidStepper {
     keep_point_joints();
     take_states();
     rebound();
+    for_each_island([this](std::size_t k) { limit_swept(k); });
     if (!all_finite()) {
       is_stale_ = true;
       return {.ending = Ending::not_finite,
@@ -936,6 +937,40 @@ class RigidStepper {
       if (rebounds[island] && only_loses(island)) limit_impacts(island);
     });
   }
+  /// Sweeps in lanes use levers and moments of inertia of the beginning of the step, along which a slender body that
+  /// turns far in it gains energy where it rubs. Such an island leaves a step with no more energy than it had and than
+  /// gravity gave it: what is too much is taken from the spins of what turns far, and else from all.
+  void limit_swept(std::size_t k) {
+    const auto members = islands_.bodies(k);
+    const Real far = square(far_turn / options_.step);
+    const auto turns_far = [&](std::uint32_t i) { return turns_far_[i] != 0 || squared(bodies_[i].spin) > far; };
+    if (is_swept_[k] == 0 || std::ranges::none_of(members, turns_far) || !only_gravity_gives(k)) return;
+    Real came(0), work(0), of_far(0);
+    for (const std::uint32_t i : members) {
+      came += came_with(i), work += 2 * dot(acceleration_[i], bodies_[i].moved) / bodies_[i].inverse_mass;
+      if (turns_far(i)) of_far += 2 * spin_energy(bodies_[i]);
+    }
+    const Real now = twice_kinetic_energy<Real, Dim>(members, bodies_), most = came + std::max(work, Real(0));
+    if (!(now > most)) return;
+    const Real factor = std::sqrt(std::max(1 - (now - most) / of_far, Real(0)));
+    for (const std::uint32_t i : members)
+      if (turns_far(i)) bodies_[i].spin *= factor;
+    if (factor == Real(0)) set_energy<Real, Dim>(most, false, members, bodies_);
+  }
+  /// Whether nothing but gravity does work on an island: it has no joints but those that keep two points together.
+  [[nodiscard]] bool only_gravity_gives(std::size_t island) const {
+    return only_gravity(world_) && world_.torque_laws.empty() &&
+           std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
+             return may_be_in_lanes(k) && !is_driven(rows_.blocks[k].a) && !is_driven(rows_.blocks[k].b);
+           });
+  }
+  /// Twice the kinetic energy of a body when the step began.
+  [[nodiscard]] Real came_with(std::uint32_t i) const {
+    RigidBody<Real, Dim> then = bodies_[i];
+    then.axes = rotation(then.orientation_before);
+    const BodyVelocity<Real, Dim> first{world_.velocity[i], world_.spin[i]};
+    return kinetic_product(then, first, first);
+  }
   /// An island leaves its impacts with no more energy than it had when the step began and its forces gave it on its
   /// way, and with just that where nothing takes any: its motion up to now is that of the impacts, whatever overlaps
   /// were undone.
@@ -945,10 +980,7 @@ class RigidStepper {
     for (const std::uint32_t i : islands_.bodies(island)) {
       const RigidBody<Real, Dim>& body = bodies_[i];
       energy.add(body, before_impacts_[i]);
-      RigidBody<Real, Dim> then = body;
-      then.axes = rotation(body.orientation_before);
-      const BodyVelocity<Real, Dim> first{world_.velocity[i], world_.spin[i]};
-      came += kinetic_product(then, first, first) + 2 * dot(acceleration_[i], body.moved) / body.inverse_mass;
+      came += came_with(i) + 2 * dot(acceleration_[i], body.moved) / body.inverse_mass;
     }
     const Real part =
         is_elastic(island) ? energy.part_to(came) : energy.part_within(std::max(energy.at(Real(0)), came));
