@@ -26,7 +26,7 @@ class IslandSolver {
     const std::size_t bodies_before = analysed_bodies_, most_before = most_updates_;
     pairs_before_.swap(pairs_);
     pairs_.clear();
-    has_joints_ = false;
+    has_joints_ = false, is_free_ = true;
     std::size_t rows = 0;
     for (const std::uint32_t k : blocks_) {
       const RowBlock& block = all.blocks[k];
@@ -35,6 +35,7 @@ class IslandSolver {
       };
       pairs_.push_back({place(block.a), place(block.b)});
       has_joints_ |= block.points == 0;
+      is_free_ &= !bodies[block.a].is_fixed() && !bodies[block.b].is_fixed();
       rows += block.rows;
     }
     do_rows_change_ = has_joints_ || contacts_turn;
@@ -52,7 +53,7 @@ class IslandSolver {
   /// Removes what the rows forbid from the velocities after the forces of a substep have acted.
   void push(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::push, has_joints_);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::push, is_inertia_of_now());
       if (do_rows_change_ || !is_loaded_) {
         direct_.template load_rows<Real>(blocks_, all, bodies);
       } else {
@@ -77,7 +78,7 @@ class IslandSolver {
   void relax(Constraints<Real, Dim>& all, Bodies bodies) {
     if (!is_direct_) return sweep_all(RowPass::relax, all, bodies);
     if (do_rows_change_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, has_joints_);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, is_inertia_of_now());
       direct_.template load_rows<Real>(blocks_, all, bodies);
       direct_.remove_impulses();
     } else {
@@ -92,7 +93,7 @@ class IslandSolver {
   /// Adds what impacts give: the rows begin without impulses.
   void rebound(Constraints<Real, Dim>& all, Bodies bodies) {
     if (is_direct_) {
-      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, has_joints_);
+      direct_.template load_bodies<Real>(members_, bodies, RowPass::relax, is_inertia_of_now());
       direct_.template load_rows<Real>(blocks_, all, bodies);
       if (solve_directly(RowPass::relax, all, bodies)) return;
     }
@@ -101,6 +102,8 @@ class IslandSolver {
   }
 
  private:
+  /// What is free keeps its angular momentum.
+  [[nodiscard]] bool is_inertia_of_now() const { return has_joints_ || (do_rows_change_ && is_free_); }
   [[nodiscard]] bool solve_directly(RowPass pass, Constraints<Real, Dim>& all, Bodies bodies) {
     if (!direct_.solve(pass)) return false;
     direct_.template store_bodies<Real>(members_, bodies);
@@ -161,8 +164,8 @@ class IslandSolver {
   std::span<const std::uint32_t> members_, blocks_;
   std::vector<typename DirectSolver<Dim>::Pair> pairs_, pairs_before_;
   std::size_t analysed_bodies_ = 0, most_updates_ = 0;
-  bool is_thin_ = false;  // whether the graph can be factorized
-  bool has_joints_ = false;
+  bool is_thin_ = false;                       // whether the graph can be factorized
+  bool has_joints_ = false, is_free_ = false;  // free: touches nothing that is fixed
   bool is_direct_ = false, do_rows_change_ = false, is_loaded_ = false;
   int sweeps_ = 1;
 };

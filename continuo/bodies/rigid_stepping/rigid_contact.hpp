@@ -290,15 +290,19 @@ template <class Real, int Dim>
   return body.axes * Vector<Real, Dim>(local - before.local_direction(outwards * rounding)) + outwards * rounding;
 }
 /// Turns the levers of the rows of a contact along with its bodies. With those of the beginning of the step, a body
-/// that turns far in it would sink in where it touches by then, and gain the energy with which it is pushed out.
+/// that turns far in it would sink in where it touches by then, and gain the energy with which it is pushed out. Two
+/// that move push each other at one point, in the middle: else a push would turn them together.
 template <class Real, int Dim>
 void turn_levers(const RigidContact<Real, Dim>& contact, std::span<ConstraintRow<Real, Dim>> rows,
                  const RigidBody<Real, Dim>& a, const RigidBody<Real, Dim>& b) {
   for (std::size_t i = 0; i < contact.size; ++i) {
     const auto& point = contact.points[i];
-    const Vector<Real, Dim> arm_a = turned_arm(point.local_a, contact.rounding_a, contact.normal, a);
-    const Vector<Real, Dim> arm_b =
-        turned_arm(point.local_b, contact.rounding_b, Vector<Real, Dim>(-contact.normal), b);
+    Vector<Real, Dim> arm_a = turned_arm(point.local_a, contact.rounding_a, contact.normal, a);
+    Vector<Real, Dim> arm_b = turned_arm(point.local_b, contact.rounding_b, Vector<Real, Dim>(-contact.normal), b);
+    if (!a.is_fixed() && !b.is_fixed()) {
+      const Vector<Real, Dim> apart = (b.x + arm_b) - (a.x + arm_a);
+      arm_a += apart * Real(0.5), arm_b -= apart * Real(0.5);
+    }
     const auto turn = [&](ConstraintRow<Real, Dim>& row) {
       row.lever_a = moment(arm_a, row.direction), row.lever_b = moment(arm_b, row.direction);
       set_mass(row, a, b);

@@ -317,7 +317,7 @@ class RigidStepper {
       const bool is_heap = contacts > most_contacts_of_thick_islands &&
                            4 * static_cast<std::size_t>(contacts) > 5 * islands_.bodies(k).size();
       if (is_cheap || (has_joints && !is_heap)) {
-        const bool contacts_turn = std::ranges::any_of(islands_.bodies(k), [&](auto i) { return turns_far_[i] != 0; });
+        const bool contacts_turn = std::ranges::any_of(blocks, [&](auto block) { return turns_far(block); });
         solvers_[k].begin(islands_, k, rows_, bodies_, contacts_turn);
       }
       const auto in_lanes =
@@ -388,10 +388,14 @@ class RigidStepper {
     std::ranges::copy_if(scalar_, std::back_inserter(turning_), [this](std::uint32_t k) { return turns_far(k); });
     gather_joints();
   }
-  /// Whether a body of a block turns far in the step.
+  /// Whether a body of a block turns far in the step, or two that move go far past each other.
   [[nodiscard]] bool turns_far(std::uint32_t block) const {
+    const auto [a, b] = std::pair(rows_.blocks[block].a, rows_.blocks[block].b);
     const auto turns = [this](std::uint32_t i) { return i < turns_far_.size() && turns_far_[i] != 0; };
-    return turns(rows_.blocks[block].a) || turns(rows_.blocks[block].b);
+    if (turns(a) || turns(b)) return true;
+    if (!moves(a) || !moves(b)) return false;
+    const Real far = std::min(world_.radius[a], world_.radius[b]) * far_way / options_.step;
+    return squared(bodies_[a].v - bodies_[b].v) > far * far;
   }
   [[nodiscard]] bool pushes(const ContactHead& head, std::uint32_t contact) const {
     if (head.b >= world_.size()) return !world_.has_traits() || !world_.traits(head.a).is_sensor;
@@ -984,8 +988,14 @@ class RigidStepper {
     }
     const Real part =
         is_elastic(island) ? energy.part_to(came) : energy.part_within(std::max(energy.at(Real(0)), came));
-    if (part == Real(1)) return;
-    for (const std::uint32_t i : islands_.bodies(island)) take_part(bodies_[i], before_impacts_[i], part);
+    for (const std::uint32_t i : islands_.bodies(island))
+      if (part != Real(1)) take_part(bodies_[i], before_impacts_[i], part);
+    // What substeps may have given before the impacts, as bodies turned, is taken from what is free as well.
+    const bool is_free = std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
+      return moves(rows_.blocks[k].a) && moves(rows_.blocks[k].b);
+    });
+    if (is_free && twice_kinetic_energy<Real, Dim>(islands_.bodies(island), bodies_) > came && came > Real(0))
+      set_energy<Real, Dim>(came, true, islands_.bodies(island), bodies_);
   }
   [[nodiscard]] bool is_elastic(std::size_t island) const {
     return std::ranges::all_of(islands_.blocks(island), [this](std::uint32_t k) {
@@ -1172,6 +1182,7 @@ class RigidStepper {
 
   static constexpr Real gain_of_turning_joints = Real(1.05);  // in a substep that turns them by a fifth of a radian
   static constexpr Real far_turn = Real(0.1);                 // of a body in a step, in radians
+  static constexpr Real far_way = Real(0.01);                 // of two bodies in a step, over the radius of the smaller
   static constexpr int sweeps_of_impacts = 20, sweeps_of_deep_contacts = 3;
   static constexpr std::ptrdiff_t most_contacts_of_thick_islands = 500;
   static constexpr std::size_t most_blocks_of_small_islands = 100;
