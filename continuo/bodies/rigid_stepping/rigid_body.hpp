@@ -24,7 +24,6 @@ struct RigidBody {
   Spin<Real, Dim> lag{};                            // of the spin that turns the body behind `spin`, see turn_freely
   Real inverse_mass{};                              // 0: never moves
   bool is_ball = false;                             // the same moment of inertia about all axes
-  bool was_moved = false;                           // by the caller, since the last step
   Inertia<Real, Dim> inertia{}, inverse_inertia{};  // in the frame of the shape
   Inertia<Real, Dim> inverse_inertia_now{};         // in the world
 

@@ -321,10 +321,8 @@ class RigidPairs {
     const Real margin = contact_margin(part, body, step);
     const Bounds<Real, Dim> bounds = grown(bounds_at(part, pose), margin);
     placed_[i] = {bounds, pose, body.velocity_at(pose.centre - body.x), body.spin, part.reach, margin, part.body};
-    if (!is_new_) {
-      const bool is_still = body.is_fixed() && body.v == V{} && body.spin == Spin<Real, Dim>{} && !body.was_moved;
-      if (is_still || united(rooms_[i], bounds) == rooms_[i]) return false;
-    }
+    // What has fallen asleep has moved in the step before.
+    if (!is_new_ && united(rooms_[i], bounds) == rooms_[i]) return false;
     rooms_[i] = room(part, body, bounds, step);
     return true;
   }

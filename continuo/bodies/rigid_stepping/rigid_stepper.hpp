@@ -216,7 +216,6 @@ class RigidStepper {
   }
   void load(std::size_t i) {
     RigidBody<Real, Dim>& body = bodies_[i];
-    body.was_moved = body.x != world_.position[i] || body.orientation != world_.orientation[i];
     body.x = body.x_before = world_.position[i], body.v = world_.velocity[i];
     body.orientation = body.orientation_before = world_.orientation[i], body.spin = world_.spin[i];
     body.moved = {}, body.stiffening = {}, body.lag = {};
