@@ -115,6 +115,38 @@ TEST(Snapshot, FastMotionGoesOnToTheSameBits) {
   fast_goes_on<float, 2>();
 }
 
+// A body comes, or goes, or another one comes in its place, or one is lifted, after the step in which all have fallen
+// asleep.
+TEST(Snapshot, GoesOnWhereBodiesHaveChangedSince) {
+  for (int change = 0; change < 5; ++change) {
+    World<double, 2> world;
+    world.gravity = {{0, -9.81}};
+    ASSERT_TRUE(world.add_wall({.normal = {{0, 1}}}));
+    for (const double x : {0.0, 0.1, 8.0, 8.2})
+      ASSERT_TRUE(world.add({.shape = Box<double, 2>{}, .position = {{x, x == 0.1 || x == 8.2 ? 1.5 : 0.5}}}));
+    const FastOptions<double> options{.sleep_after = 0.3};
+    FastMotion<double, 2> motion(world, options);
+    for (int k = 0; k < 100; ++k) ASSERT_TRUE(motion.advance());
+    ASSERT_EQ(motion.statistics().asleep, 4u);
+    if (change == 1 || change == 3) {
+      ASSERT_TRUE(world.remove(world.handle(0)));
+    }
+    if (change == 2 || change == 3) {
+      ASSERT_TRUE(world.add({.shape = Box<double, 2>{}, .position = {{4, 0.6}}}));
+    }
+    if (change == 4) world.position[1][1] += 0.5;
+    World<double, 2> restored;
+    FastMotion<double, 2> of_restored(restored, options);
+    const Status status = restore(snapshot(world, motion), restored, of_restored);
+    ASSERT_TRUE(status) << change << ' ' << describe(status);
+    for (int k = 0; k < 100; ++k) {
+      ASSERT_TRUE(motion.advance() && of_restored.advance());
+      ASSERT_EQ(state_hash(restored), state_hash(world)) << change << " step " << k;
+      ASSERT_EQ(of_restored.statistics().asleep, motion.statistics().asleep) << change << " step " << k;
+    }
+    EXPECT_EQ(motion.statistics().asleep, world.size()) << change;
+  }
+}
 TEST(Snapshot, HandlesSurvive) {
   World<double, 3> world;
   const auto a = world.add({}), b = world.add({.position = {{5, 0, 0}}});

@@ -158,6 +158,8 @@ class RigidStepper {
   [[nodiscard]] static std::size_t bodies_of(const World<Real, Dim>& world) {
     return world.size() + world.walls().size() + 1;
   }
+  /// Whether the world still has the bodies, the walls and the shapes of the last step: else all wake.
+  [[nodiscard]] bool is_of_world() const { return bodies_.size() == bodies_of(world_) && pairs_.is_of(world_); }
   void begin() {
     bodies_.assign(bodies_of(world_), {});
     moves_.assign(bodies_.size(), 0);
@@ -169,9 +171,10 @@ class RigidStepper {
   /// sleeps is fixed for this step.
   void load() {
     const bool have_other_partners = !pairs_.has_meshes_of(world_) || rules_.ignored != world_.ignored_groups();
-    if (!is_stale_ && have_other_partners) sleep_ = {};
-    if (!is_stale_ && !pairs_.is_of(world_)) contacts_.find_anew();
-    if (is_stale_ || bodies_.size() != bodies_of(world_) || !pairs_.is_of(world_)) begin();
+    const bool are_others = !is_of_world();
+    if (!is_stale_ && (have_other_partners || are_others)) sleep_ = {};
+    if (!is_stale_ && are_others) contacts_.find_anew();
+    if (is_stale_ || are_others) begin();
     sleep_.wake_changed(world_, bodies_);
     load_bodies();
     joint_handles_ = world_.joints();
@@ -1166,6 +1169,10 @@ class RigidStepper {
   template <class Archive>
   void transfer(Archive& archive) {
     if constexpr (!Archive::reads) manifolds_.store_impulses(contacts_.all());
+    // What the caller has changed since the last step has the effect that it would have in the next one.
+    const bool are_others = !Archive::reads && !is_of_world();
+    if (are_others) contacts_.find_anew();
+    if (!Archive::reads && !are_others) sleep_.wake_changed(world_, bodies_);
     contacts_.transfer(archive, bodies_of(world_));
     auto joints = static_cast<std::uint64_t>(joints_.size());
     archive(joints);
@@ -1176,7 +1183,9 @@ class RigidStepper {
     for (KeptJoint& joint : joints_)
       archive(joint.handle.slot), archive(joint.handle.generation), archive(joint.impulses), archive(joint.linear),
           archive(joint.is_swept);
-    archive(touches_), archive(sleep_);
+    archive(touches_);
+    RigidSleep<Real, Dim> none;
+    archive(are_others ? none : sleep_);
   }
 
   static constexpr Real gain_of_turning_joints = Real(1.05);  // in a substep that turns them by a fifth of a radian
