@@ -197,7 +197,7 @@ class JointedIsland {
     for (const std::uint32_t i : members_)
       if (!is_stiff_) bodies_[i].stiffening = {};
     const Real parts = std::max(Real(rate * h / most_turn), std::min(swing, most_swings));
-    return static_cast<int>(std::ceil(std::clamp(parts, Real(1), Real(most_parts))));
+    return static_cast<int>(std::ceil(std::clamp(parts, Real(1), std::min(Real(most_parts), most_parts_of_all()))));
   }
 
   /// The bodies have been accelerated, but have not turned. `aim(h)` makes the rows of contacts ask for what they are
@@ -206,10 +206,10 @@ class JointedIsland {
   void advance(const Real& h, std::span<const V> acceleration, std::span<BodyVelocity<Real, Dim>> free, Aim&& aim,
                Note&& note, Given&& given) {
     Real part = h / static_cast<Real>(parts(h)), left = h;
-    const Real least = part / Real(more_parts);
+    const Real least = std::max(Real(part / more_parts), Real(h / most_parts_of_all()));
     accelerate(acceleration, -h);
     scale_impulses(part / h);
-    while (left > least / 2) {
+    while (left > part / 2) {
       begin_.clear(), begin_impulses_.clear();
       for (const std::uint32_t i : members_) begin_.push_back(bodies_[i]);
       for_each_row([this](Row& row) { begin_impulses_.push_back(row.impulse); });
@@ -229,10 +229,15 @@ class JointedIsland {
   }
 
  private:
+  /// Of a large island fewer: where joints contradict each other even the least parts are not good, and a step through
+  /// thousands of them would take minutes.
+  [[nodiscard]] Real most_parts_of_all() const {
+    return std::clamp(Real(5000) / static_cast<Real>(blocks_.size()), Real(2), Real(most_parts_of_substep));
+  }
   static constexpr Real most_turn = Real(0.2), most_error = Real(0.05);
   static constexpr Real most_gain = Real(1.05);  // where it is only nearly known what motors and springs give
   static constexpr Real accuracy = Real(2e-4), most_swings = Real(32);
-  static constexpr int most_parts = 64, more_parts = 32, most_corrections = 8;
+  static constexpr int most_parts = 64, more_parts = 32, most_parts_of_substep = 100, most_corrections = 8;
 
   /// By how many radians the pull of joints swings a body at its anchors in the time of which the rows are, at most
   /// (add_stiffening): the square is the trace of what it stiffens over the inertia.
