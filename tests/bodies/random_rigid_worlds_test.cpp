@@ -190,6 +190,11 @@ TEST(RandomRigidWorlds, WhatHasFallenAsleepIsFound) {
   EXPECT_GT(try_many(232, 240).stepped, 4u);
 }
 
+// A query by a shape that is as large as a number may be overran the stack of its search (seed 1558).
+TEST(RandomRigidWorlds, ShapesAsLargeAsNumbersAreAskedFor) {
+  EXPECT_GT(try_many(1556, 1560).stepped, 1u);
+}
+
 // Thousands of bodies at one point have millions of pairs: these are few enough.
 TEST(RandomRigidWorlds, ACrowdAtOnePoint) {
   World<double, 2> world;

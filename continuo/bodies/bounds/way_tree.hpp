@@ -106,7 +106,8 @@ void WayTree<Real, Dim>::push(const Node& node, const std::array<Real, Node::lan
   const std::size_t first = count;
   for (std::size_t k = Node::lanes; k-- > 0;) {  // no branch: it would be unpredictable
     stack[count] = {node.children[k], entry[k]};
-    count += entry[k] < std::numeric_limits<Real>::infinity();
+    // The root is no child: that is where there is none, which a sweep that is not finite would enter.
+    count += entry[k] < std::numeric_limits<Real>::infinity() && node.children[k] != 0;
   }
   for (std::size_t k = first + 1; k < count; ++k)
     for (std::size_t i = k; i > first && stack[i - 1].fraction < stack[i].fraction; --i)

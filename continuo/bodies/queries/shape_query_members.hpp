@@ -40,6 +40,11 @@ class Queries<Real, Dim>::ShapeSearch {
     search.solid_ = std::move(*made);
     search.axes_ = rotation(orientation);
     search.centre_ = placed.position + search.axes_ * search.solid_.centre;
+    Real size = length(search.centre_);
+    for (const auto& part : search.solid_.parts)
+      size = std::max(size, Real(length(part.in_solid.centre) + part.convex.reach));
+    if (!std::isfinite(size * size))
+      return invalid_input("the size of the shape and its place, and their squares, must be finite");
     return search;
   }
 
