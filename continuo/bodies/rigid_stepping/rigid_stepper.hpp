@@ -678,9 +678,7 @@ class RigidStepper {
       const bool is_by_driven = is_driven(block.a) || is_driven(block.b);
       if (block.points > 0 && !is_by_driven) continue;
       for (const auto& row : std::span(rows_.rows).subspan(block.first, block.rows)) {
-        const bool is_rigid = row.softness == Real(0) && row.bias_at_end == Real(0) && row.most == -row.least &&
-                              row.most == std::numeric_limits<Real>::infinity();
-        if (is_rigid && !is_by_driven) continue;
+        if (holds_rigidly(row) && !is_by_driven) continue;
         Real way(0);
         if (!bodies_[block.b].is_fixed())
           way += dot(row.direction, bodies_[block.b].v + free_[block.b].v) +
