@@ -124,7 +124,7 @@ void set_error(PyObject* type, const std::string& text) {
 
 RunControl::~RunControl() {
   if (!type_) return;
-  const py::gil_scoped_acquire gil;
+  const WithGil gil;
   Py_XDECREF(type_);
   Py_XDECREF(value_);
   Py_XDECREF(traceback_);
@@ -171,7 +171,7 @@ StateFunction::StateFunction(py::object f, const py::object& arguments, Form for
 }
 
 StateFunction::~StateFunction() {
-  const py::gil_scoped_acquire gil;
+  const WithGil gil;
   for (PyObject* one : call_) Py_XDECREF(one);
   f_ = py::object();
 }

@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+
+#include "gil.hpp"
 
 namespace continuo::python {
 
@@ -41,18 +44,12 @@ class RunControl {
 /// The GIL for a callback, where the run does not have it.
 class GilForCallback {
  public:
-  explicit GilForCallback(bool held) : held_(held) {
-    if (!held_) state_ = PyGILState_Ensure();
-  }
-  GilForCallback(const GilForCallback&) = delete;
-  GilForCallback& operator=(const GilForCallback&) = delete;
-  ~GilForCallback() {
-    if (!held_) PyGILState_Release(state_);
+  explicit GilForCallback(bool held) {
+    if (!held) taken_.emplace();
   }
 
  private:
-  bool held_;
-  PyGILState_STATE state_{};
+  std::optional<WithGil> taken_;
 };
 
 /// In what form a function gets the state.
@@ -83,19 +80,7 @@ class StateFunction {
   /// the exception. The calling thread has the GIL.
   template <class Take>
   bool call(double t, const double* x, Take&& take) {
-    if (control_->failed()) return false;
-    const Light light = hand_over(t, x);
-    if (light == Light::failed) return fail(t);
-    if (PyObject* result = invoke()) {
-      const bool taken = take(result);
-      Py_DECREF(result);
-      if (taken) {
-        if (light == Light::used) look_at_use();
-        return true;
-      }
-    }
-    if (light != Light::used || !PyErr_ExceptionMatches(PyExc_Exception)) return fail(t);
-    return call_with_array(t, x, [&](PyObject* result) { return take(result); });
+    return or_stay([&] { return try_call(t, x, std::forward<Take>(take)); });
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -111,6 +96,23 @@ class StateFunction {
   [[nodiscard]] PyObject* invoke();
   void look_at_use();
   bool fail(double t);
+  template <class Take>
+  bool try_call(double t, const double* x, Take&& take) {
+    stay_where_python_ends();
+    if (control_->failed()) return false;
+    const Light light = hand_over(t, x);
+    if (light == Light::failed) return fail(t);
+    if (PyObject* result = invoke()) {
+      const bool taken = take(result);
+      Py_DECREF(result);
+      if (taken) {
+        if (light == Light::used) look_at_use();
+        return true;
+      }
+    }
+    if (light != Light::used || !PyErr_ExceptionMatches(PyExc_Exception)) return fail(t);
+    return call_with_array(t, x, [&](PyObject* result) { return take(result); });
+  }
   template <class Take>
   bool call_with_array(double t, const double* x, Take&& take) {
     PyErr_Clear();

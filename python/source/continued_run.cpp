@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "gil.hpp"
 #include "parts.hpp"
 #include "run.hpp"
 
@@ -166,18 +167,20 @@ struct Costs {
 
 void add_continued_run(py::module_& module) {
   using continuo::python::ContinuedRun;
+  const py::call_guard<continuo::python::Visit> guard;
   py::class_<ContinuedRun>(module, "ContinuedRun", "A run that is continued while its function stays what it was.")
       .def(py::init<py::object, double, double, bool, py::tuple>(), py::arg("run"), py::arg("t"), py::arg("end"),
            py::arg("lands"), py::arg("functions"))
       .def_property_readonly_static("beyond", [](const py::object&) { return ContinuedRun::beyond; })
       .def("leads_to", &ContinuedRun::leads_to, py::arg("t"), py::arg("y"), py::arg("functions"))
-      .def("advance_to", &ContinuedRun::advance_to, py::arg("t"), py::arg("most_steps"))
+      .def("advance_to", &ContinuedRun::advance_to, py::arg("t"), py::arg("most_steps"), guard)
       .def("stop_at", &ContinuedRun::stop_at, py::arg("t"))
-      .def("go_on", &ContinuedRun::go_on, py::arg("t"), py::arg("y"), py::arg("functions"), py::arg("most_steps"))
+      .def("go_on", &ContinuedRun::go_on, py::arg("t"), py::arg("y"), py::arg("functions"), py::arg("most_steps"),
+           guard)
       .def("goes_beyond", &ContinuedRun::goes_beyond, py::arg("t"));
   module.def(
       "is_native", [](const py::object& f) { return continuo::python::native_of(f, py::none()).has_value(); },
       py::arg("f"), "Whether this is a compiled function, which a run calls without the interpreter.");
-  module.def("through_times", &continuo::python::through_times, py::arg("run"), py::arg("times"),
-             py::arg("most_steps"));
+  module.def("through_times", &continuo::python::through_times, py::arg("run"), py::arg("times"), py::arg("most_steps"),
+             guard);
 }

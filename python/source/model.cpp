@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
+#include "gil.hpp"
 #include "loaded_model.hpp"
 #include "messages.hpp"
 #include "parts.hpp"
@@ -36,7 +37,7 @@ py::tuple ready(model::Loaded loaded, model::NativeUse native) {
   if (!loaded.model) return py::make_tuple(py::none(), messages);
   std::shared_ptr<const model::ModelProgram> program;
   {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     if (native != model::NativeUse::never)
       loaded.model->native = std::make_shared<model::NativeCompiler>(model::NativeOptions{.use = native});
     program = left_alone_in_forks(model::compile(*std::move(loaded.model)));
@@ -60,7 +61,7 @@ py::tuple load_text(const std::string& name, const std::string& text, const std:
                     const model::Overrides& values) {
   const model::NativeUse use = use_named(native);
   model::Loaded loaded = [&] {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     return model::load(model::Source(name, text), {.overrides = values});
   }();
   return ready(std::move(loaded), use);
@@ -68,7 +69,7 @@ py::tuple load_text(const std::string& name, const std::string& text, const std:
 
 py::tuple with_values(const LoadedModel& self, const model::Overrides& values) {
   model::Loaded loaded = [&] {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     return model::load(self.source, {.overrides = values});
   }();
   return ready(std::move(loaded), self.native);

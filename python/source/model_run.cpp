@@ -8,6 +8,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "gil.hpp"
 #include "loaded_model.hpp"
 #include "messages.hpp"
 #include <continuo/results/json.hpp>
@@ -149,7 +150,7 @@ py::dict values_of_lets(const ModelRun& self) {
   for (const model::Quantity& let : lets) nodes.push_back(let.node);
   std::vector<std::vector<double>> values;
   {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     values = model::values_along(*self.program, self.run, nodes);
   }
   py::dict all;
@@ -165,7 +166,7 @@ py::tuple series_of(const model::Column& column, std::vector<double> values) {
 py::list plots(const ModelRun& self) {
   std::vector<results::PlotData> plots;
   {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     plots = results::plots_of(*self.program, self.run);
   }
   py::list all;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "gil.hpp"
 #include <continuo/solve/outcome.hpp>
 
 namespace py = pybind11;
@@ -223,7 +224,7 @@ void Run::run_with_gil() {
 // Signals are looked for at intervals of time, whatever a step takes.
 void Run::run_without_gil() {
   const bool looks = is_main_thread();
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   double last = detail::seconds_of_steady_clock();
   std::size_t steps = 0, steps_between_looks = 16;
   while (advance()) {
@@ -236,7 +237,7 @@ void Run::run_without_gil() {
     }
     steps_between_looks = std::max<std::size_t>(steps_between_looks / 2, 1);
     last = now;
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     control_.check_signals();
     if (progress_) report_progress(false);
     if (control_.failed()) return;
@@ -248,7 +249,7 @@ void Run::report_progress(bool at_end) {
   if (control_.failed() || (!at_end && now - last_progress_ < seconds_between_progress)) return;
   last_progress_ = now;
   const double part = (run_->t() - settings_.t0) / (settings_.t1 - settings_.t0);
-  PyObject* result = PyObject_CallFunction(progress_.ptr(), "dd", run_->t(), part);
+  PyObject* result = or_stay([&] { return PyObject_CallFunction(progress_.ptr(), "dd", run_->t(), part); });
   if (!result) return control_.take_error("continuo: in progress");
   Py_DECREF(result);
 }
@@ -261,7 +262,7 @@ bool Run::step() {
   if (holds_gil_) {
     goes_on = advanced();
   } else {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     goes_on = advanced();
   }
   if (PyErr_CheckSignals() != 0) control_.take_error("");

@@ -9,6 +9,7 @@
 
 #include <pybind11/stl.h>
 
+#include "gil.hpp"
 #include "parts.hpp"
 #include "run.hpp"
 #include <continuo/solve/catalogue.hpp>
@@ -215,30 +216,31 @@ namespace {
 
 void add_run(py::module_& module) {
   using continuo::python::Run;
+  const py::call_guard<continuo::python::Visit> guard;
   py::class_<Run>(module, "Run", "A run of one right-hand side.")
       .def(py::init(&continuo::python::make_run), py::arg("fun"), py::arg("t0"), py::arg("t1"), py::arg("y0"),
            py::arg("method"), py::arg("rtol"), py::arg("atol"), py::arg("max_step"), py::arg("times"), py::arg("dense"),
-           py::arg("args"), py::arg("extras"))
-      .def("run", &Run::run)
-      .def("check", &Run::check)
-      .def("step", &Run::step)
+           py::arg("args"), py::arg("extras"), guard)
+      .def("run", &Run::run, guard)
+      .def("check", &Run::check, guard)
+      .def("step", &Run::step, guard)
       .def("take_error", &Run::take_error)
-      .def("times", &Run::times)
-      .def("states", &Run::states)
-      .def("dense", &Run::dense)
-      .def("events", &Run::events)
-      .def("summary", &Run::summary)
-      .def("y_at", &Run::y_at, py::arg("t"))
+      .def("times", &Run::times, guard)
+      .def("states", &Run::states, guard)
+      .def("dense", &Run::dense, guard)
+      .def("events", &Run::events, guard)
+      .def("summary", &Run::summary, guard)
+      .def("y_at", &Run::y_at, py::arg("t"), guard)
       .def("last_piece", &Run::last_piece, py::arg("t_old"))
       .def("set_state", &Run::set_state, py::arg("y"))
       .def("restart", &Run::restart)
-      .def("extend_to", &Run::extend_to, py::arg("t1"))
+      .def("extend_to", &Run::extend_to, py::arg("t1"), guard)
       .def_property_readonly("t", &Run::t)
       .def_property_readonly("y", &Run::y)
       .def_property_readonly("native", &Run::native);
   module.def("run_to_end", &continuo::python::run_to_end, py::arg("fun"), py::arg("t0"), py::arg("t1"), py::arg("y0"),
              py::arg("method"), py::arg("rtol"), py::arg("atol"), py::arg("max_step"), py::arg("times"),
-             py::arg("dense"), py::arg("args"), py::arg("extras"),
+             py::arg("dense"), py::arg("args"), py::arg("extras"), guard,
              "A Run to its end: (the Run where it has more to tell, or None, its error, summary, times, states).");
   module.def("methods", &continuo::python::methods,
              "The methods by name: (name, order, order of the error estimate, for x'' = a alone, implicit).");

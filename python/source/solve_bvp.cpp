@@ -14,6 +14,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 
+#include "gil.hpp"
 #include "native_at_points.hpp"
 #include "parts.hpp"
 #include <continuo/boundary/two_point.hpp>
@@ -127,7 +128,7 @@ class Lock {
   class Released {
    public:
     explicit Released(Lock& lock) : lock_(lock) { lock_.thread_ = PyEval_SaveThread(); }
-    ~Released() { PyEval_RestoreThread(lock_.thread_); }
+    ~Released() { lock_.take(); }
     Released(const Released&) = delete;
     Released& operator=(const Released&) = delete;
 
@@ -137,7 +138,7 @@ class Lock {
   /// While it exists the lock is taken, within what has given it up.
   class Taken {
    public:
-    explicit Taken(Lock& lock) : lock_(lock) { PyEval_RestoreThread(lock_.thread_); }
+    explicit Taken(Lock& lock) : lock_(lock) { lock_.take(); }
     ~Taken() { lock_.thread_ = PyEval_SaveThread(); }
     Taken(const Taken&) = delete;
     Taken& operator=(const Taken&) = delete;
@@ -147,6 +148,11 @@ class Lock {
   };
 
  private:
+  void take() {
+    continuo::python::or_stay([this] { PyEval_RestoreThread(thread_); });
+    continuo::python::stay_where_python_ends();
+  }
+
   PyThreadState* thread_ = nullptr;
 };
 
@@ -390,7 +396,8 @@ template <class Number>
 void add(py::module_& module) {
   module.def("solve_bvp", &solve<Number>, py::arg("fun"), py::arg("bc"), py::arg("x").noconvert(),
              py::arg("y").noconvert(), py::arg("p"), py::arg("S"), py::arg("fun_jac"), py::arg("bc_jac"),
-             py::arg("tol"), py::arg("bc_tol"), py::arg("max_nodes"), py::arg("progress"));
+             py::arg("tol"), py::arg("bc_tol"), py::arg("max_nodes"), py::arg("progress"),
+             py::call_guard<continuo::python::Visit>());
   module.def("evaluate_cubics", &evaluate<Number>, py::arg("x"), py::arg("c").noconvert(), py::arg("points"),
              py::arg("nu"), py::arg("extrapolate"));
 }

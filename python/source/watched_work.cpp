@@ -7,6 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "gil.hpp"
+
 namespace continuo::python {
 namespace {
 
@@ -69,15 +71,16 @@ py::object do_watched(const std::function<void()>& work, Watched& watched, const
   py::object raised;
   std::exception_ptr failure;
   {
-    const py::gil_scoped_release unlocked;
+    const WithoutGil unlocked;
     Worker worker(work);
     Clock::time_point next = Clock::now() + between_places;
     while (!worker.wait_for(between_signals)) {
-      const py::gil_scoped_acquire locked;
+      const WithGil locked;
       if (raised) continue;
       if (PyErr_CheckSignals() == 0 && !tell.is_none() && Clock::now() >= next) {
         next = Clock::now() + between_places;
-        py::reinterpret_steal<py::object>(PyObject_CallFunction(tell.ptr(), "d", watched.place.load()));
+        py::reinterpret_steal<py::object>(
+            or_stay([&] { return PyObject_CallFunction(tell.ptr(), "d", watched.place.load()); }));
       }
       if (PyErr_Occurred() == nullptr) continue;
       raised = taken_exception();

@@ -14,6 +14,7 @@
 #include <pybind11/stl.h>
 
 #include "bound_world.hpp"
+#include "gil.hpp"
 #include "moving_world.hpp"
 #include "parts.hpp"
 
@@ -27,6 +28,7 @@ using continuo::python::MotionSettings;
 using continuo::python::MovingWorld;
 using continuo::python::number_of;
 using continuo::python::raise_unless;
+using continuo::python::WithoutGil;
 
 namespace {
 
@@ -167,7 +169,7 @@ class Bound : public BoundWorld<Dim> {
     Status status;
     {
       const InterruptOfSignal interrupt(moving->interrupt);
-      const py::gil_scoped_release release;
+      const WithoutGil release;
       try {
         status = by(*moving);
       } catch (...) {

@@ -64,7 +64,7 @@ def test_other_threads_run_during_a_compiled_run() -> None:
     try:
         for _ in range(2):
             before = counts[0]
-            solve_ivp(lorenz, (0, 1000), [1.0, 1.0, 1.0], rtol=1e-8)
+            solve_ivp(lorenz, (0, 10_000), [1.0, 1.0, 1.0], rtol=1e-8)  # longer than a busy machine lets a thread wait
             assert counts[0] > before
     finally:
         done.set()
@@ -99,29 +99,50 @@ def test_ctrl_c_ends_a_run_at_once_and_keeps_what_was_computed(kind: str) -> Non
         return [y[1], -y[0], 0.0]
 
     fun = _continuo.Native(address("lorenz"), size=3) if kind == "compiled" else f
-    timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     begin = time.perf_counter()
     with pytest.raises(KeyboardInterrupt) as info:
         solve_ivp(fun, (0, 1e9), [1.0, 1.0, 1.0], rtol=1e-9)
-    assert time.perf_counter() - begin < 2
+    assert time.perf_counter() - begin < 20  # without an interrupt it would take an hour
     assert isinstance(info.value, Interrupted)
     result = info.value.result
     assert len(result.t) > 1 and result.y.shape == (3, len(result.t)) and not result.success
     timer.join()
 
 
-def test_a_run_that_is_left_at_exit_does_not_crash() -> None:
-    script = """
-        import threading, continuo
-        def f(t, y):
-            return [-y[0]]
-        thread = threading.Thread(target=lambda: continuo.solve_ivp(f, (0, 1e12), [1.0], max_step=1.0), daemon=True)
+@pytest.mark.parametrize("wait", [0.0, 0.02, 0.2])
+@pytest.mark.parametrize("left", ["python", "compiled", "boundary"])
+def test_a_run_that_is_left_at_exit_does_not_crash(left: str, wait: float) -> None:
+    # The end of the interpreter may find the run in any place, also before its first step: hence several at once, which
+    # disturb each other. One in twenty aborted, in an earlier version.
+    script = f"""
+        import sys, threading
+        import numpy as np
+        import continuo
+        sys.path.insert(0, {os.path.dirname(__file__)!r})
+        from compiled import address
+
+        def solve():
+            if "{left}" == "python":
+                continuo.solve_ivp(lambda t, y: [-y[0]], (0, 1e12), [1.0], max_step=1.0)
+            elif "{left}" == "compiled":
+                lorenz = continuo._continuo.Native(address("lorenz"), size=3)
+                continuo.solve_ivp(lorenz, (0, 1e12), [1.0, 1.0, 1.0], rtol=1e-9)
+            else:
+                while True:
+                    continuo.solve_bvp(lambda x, y: np.array([y[1], -np.exp(y[0])]),
+                                       lambda a, b: np.array([a[0], b[0]]), [0, 1], np.zeros((2, 2)), tol=1e-12)
+
+        thread = threading.Thread(target=solve, daemon=True)
         thread.start()
-        thread.join(0.2)
+        thread.join({wait})
     """
-    ended = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], timeout=30)
-    assert ended.returncode == 0
+    command = [sys.executable, "-c", textwrap.dedent(script)]
+    running = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+    for one in running:
+        _, said = one.communicate(timeout=120)
+        assert (one.returncode, said) == (0, "")
 
 
 def test_one_run_in_several_threads_is_refused_not_broken() -> None:
