@@ -21,7 +21,7 @@
 
 namespace continuo {
 
-inline constexpr std::uint32_t snapshot_version = 11;
+inline constexpr std::uint32_t snapshot_version = 12;
 
 /// The world as bytes, without a motion.
 template <class Real, int Dim>

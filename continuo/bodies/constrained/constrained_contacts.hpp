@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <continuo/bodies/contact_events.hpp>
+#include <continuo/bodies/contacts/endless_collisions.hpp>
 #include <continuo/bodies/contacts/impulse.hpp>
 #include <continuo/bodies/contacts/joint_impacts.hpp>
 #include <continuo/bodies/contacts/persistent_contacts.hpp>
@@ -97,8 +98,9 @@ class ConstrainedContacts {
     std::ranges::copy_if(near, std::back_inserter(touching), [&](const Touching& at) { return touches(at); });
     if (touching.empty()) return {};
     const std::vector<Real> before = last;
-    for (int round = 0; fault && strike_all(touching, slow, before, round > 64, journal); ++round)
-      if (round >= usual_rounds && !goes_on(touching, slow, round)) break;
+    const Real least = std::max(slow, Real(rounded_speed() * fastest_of(touching)));
+    for (std::uint32_t round = 0; fault && strike_all(touching, slow, before, round, journal); ++round)
+      if (round >= usual_rounds && !goes_on(touching, least, round)) break;
     if (!fault) return {};
     if (!(slow > Real(0))) return {};
     std::vector<Touching> gentle;
@@ -115,10 +117,33 @@ class ConstrainedContacts {
       if (k < held.size() && held[k] == at) {
         ++k;
       } else {
-        strike(at, slow / 1'000'000, material_now(at, before, false), journal);  // smaller speeds are rounding
+        strike(at, slow / 1'000'000, material_now(at, slow, before, 0), journal);  // smaller speeds are rounding
       }
     held.look_again();
     return held;
+  }
+
+  /// Resolves the bounces of this instant among `near`, one after the other; what does not bounce is left to a time
+  /// step. Returns the pairs that approach each other faster than `slow`, and bounce once they touch. Where bounces do
+  /// not end, there is a `fault`.
+  [[nodiscard]] std::vector<Touching> bounce(std::span<const Touching> near, const Real& slow, const Journal& journal) {
+    fault = {};
+    const std::vector<Real> before = last;
+    const auto bounces = [&](const Touching& at, std::uint32_t round) {
+      return approaches(at, slow) && material_now(at, slow, before, round).restitution > Real(0);
+    };
+    std::vector<Touching> touching, coming;
+    std::ranges::copy_if(near, std::back_inserter(touching), [&](const Touching& at) { return touches(at); });
+    const Real least = std::max(slow, Real(rounded_speed() * fastest_of(touching)));
+    bool is_any = true;
+    for (std::uint32_t round = 0; is_any && (round < usual_rounds || goes_on(touching, least, round)); ++round) {
+      is_any = false;
+      for (const Touching& at : touching)
+        if (bounces(at, round)) is_any = strike(at, slow, material_now(at, slow, before, round), journal) || is_any;
+    }
+    std::ranges::copy_if(near, std::back_inserter(coming),
+                         [&](const Touching& at) { return !touches(at) && bounces(at, 0); });
+    return coming;
   }
 
   /// Whether the two touch: the gap is at most the rounding of a position or the allowance, or, in a persistent
@@ -128,10 +153,15 @@ class ConstrainedContacts {
     const Real least = Real(16 * std::numeric_limits<Real>::epsilon() * size), gap = gap_of(world_, at);
     return gap <= std::max(least, allowance) || (gap <= left_by_steps && find(lasting, at));
   }
-  /// Whether the two approach each other faster than `slow`, and faster than rounding explains.
+  /// Whether the two approach each other faster than `slow`, and faster than the rounding of their speeds, and that of
+  /// their positions over a contact time, explain.
   [[nodiscard]] bool approaches(const Touching& at, const Real& slow) const {
+    constexpr Real rounding = 8 * std::numeric_limits<Real>::epsilon();
     const V rate = (at.with_wall() ? V{} : world_.velocity[at.b]) - world_.velocity[at.a];
-    return approach_of(world_, at) > std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
+    const Real least = std::max(slow, Real(rounding * length(rate))), approach = approach_of(world_, at);
+    if (!(approach > least)) return false;
+    const Real size = length(world_.position[at.a]) + world_.radius[at.a];
+    return approach * contact_time > rounding * size || !(contact_time > Real(0));
   }
   /// Applies the impulse of a collision. False where the two do not approach each other.
   bool strike(const Touching& at, const Real& slow, const Material<Real>& material, const Journal& journal) {
@@ -143,17 +173,20 @@ class ConstrainedContacts {
     return true;
   }
   /// The combined material of a pair. If a body has collided within the contact time before this instant, or the
-  /// contact persists already, the restitution is 0, unless it is 1.
-  [[nodiscard]] Material<Real> material_now(const Touching& at, const std::vector<Real>& before,
-                                            bool is_squeezed) const {
+  /// contact persists already, the restitution is 0, unless it is 1 or the two approach each other faster than
+  /// 2 `slow`, the speed that forces give in the contact time: what returns so soon by its speed, as a light body
+  /// between a wall and a heavy one, is in no contact that lasts. It is 0 too in a round by which bounces have used up
+  /// the approach.
+  [[nodiscard]] Material<Real> material_now(const Touching& at, const Real& slow, const std::vector<Real>& before,
+                                            std::uint32_t round) const {
     const bool is_wall = at.with_wall();
     Material<Real> material = combined(world_.combine_rule, world_.material[at.a],
                                        is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
-    const bool loses = material.restitution < Real(1) || material.friction > Real(0);
     const bool is_held =
         world_.time - before[at.a] < contact_time || (!is_wall && world_.time - before[at.b] < contact_time);
-    if (is_held || find(lasting, at)) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
-    if (is_squeezed && loses) material.restitution = Real(0);
+    if (material.restitution < Real(1) && ((approach_of(world_, at) <= 2 * slow && (is_held || find(lasting, at))) ||
+                                           is_endless(material.restitution, round)))
+      material.restitution = Real(0);
     return material;
   }
 
@@ -189,12 +222,12 @@ class ConstrainedContacts {
   }
 
  private:
-  static constexpr int usual_rounds = 256, most_rounds = 10'000;
+  static constexpr std::uint32_t usual_rounds = 256, most_rounds = 10'000;
 
-  /// Whether there is to be another round after those that should have been enough. What still approaches by rounding
-  /// needs none; bodies that lose nothing, as a light one between a wall and a heavy one, may need thousands.
-  [[nodiscard]] bool goes_on(std::span<const Touching> touching, const Real& slow, int round) {
-    const Real least = std::max(slow, Real(rounded_speed() * fastest_of(touching)));
+  /// Whether there is to be another round after those that should have been enough. What approaches by no more than
+  /// `least`, by rounding, needs none; bodies that lose nothing, as a light one between a wall and a heavy one, may
+  /// need thousands.
+  [[nodiscard]] bool goes_on(std::span<const Touching> touching, const Real& least, std::uint32_t round) {
     if (std::ranges::none_of(touching, [&](const Touching& at) { return approach_of(world_, at) > least; }))
       return false;
     if (round < most_rounds) return true;
@@ -228,11 +261,11 @@ class ConstrainedContacts {
   /// Resolves the contacts that bounce one after the other, and then all others together. False where no two bodies
   /// approach each other.
   [[nodiscard]] bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
-                                bool is_squeezed, const Journal& journal) {
+                                std::uint32_t round, const Journal& journal) {
     bool is_any = false, is_plastic = false;
     std::vector<Touching> plastic;
     for (const Touching& at : touching) {
-      const Material<Real> material = material_now(at, before, is_squeezed);
+      const Material<Real> material = material_now(at, slow, before, round);
       if (material.restitution > Real(0)) {
         is_any = strike(at, slow, material, journal) || is_any;
       } else {

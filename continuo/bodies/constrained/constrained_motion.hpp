@@ -210,9 +210,10 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     contact_state_.allowance = pull * stride_ * stride_ / 2;
     contact_state_.left_by_steps = pull * stride_ * stride_;
     near_.renew(world_, stride_, pull);
-    const std::vector<Touching> bouncing = bounce(2 * pull * stride_);
+    const std::vector<Touching> bouncing = contact_state_.bounce(near_.pairs(), 2 * pull * stride_, journal());
+    if (!contact_state_.fault) return fail(call, contact_state_.fault);
     const Real left = call.until - world_.time;
-    const Real h = time_to_bounce(bouncing, 2 * pull * stride_, force, std::min(stride_, left));
+    const Real h = time_to_bounce(bouncing, force, std::min(stride_, left));
     steps_.advance(world_, near_.pairs(), {force, torque, pull}, h);
     world_.time = h >= left ? call.until : world_.time + h;
     note_pushed(h);
@@ -270,6 +271,10 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   PersistentContacts<Real, Dim> resolve() {
     Flow flow(world_, companions_);
     const auto [force, torque] = flow.loads(world_.time);
+    const Real slow = 2 * greatest_acceleration(world_, force) * stride_;
+    met_fast_ = std::ranges::any_of(candidates_, [&](const Candidate<Real>& at) {
+      return contact_state_.touches(at.pair) && contact_state_.approaches(at.pair, slow);
+    });
     return contact_state_.resolve(near_now(), force, torque, journal());
   }
   std::vector<Touching> near_now() const {
@@ -322,15 +327,15 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     if (is_before_end) step_ = integrator.step_size();
     lasted_ = integrator.t() - world_.time;
     if (may_step() && integrator.outcome().ending == Ending::step_too_small) is_too_short = true;
-    if (is_too_short) {
-      zeno_guard_.go_by_steps();
-    } else if (is_before_end && may_step()) {
-      zeno_guard_.has_flown(lasted_, stride_);
-    }
     if (!is_too_short && !succeeded(integrator.outcome().ending))
       return fail(call, cannot_continue("the path cannot be followed beyond t = " + std::to_string(integrator.t()) +
                                         ": " + std::string(to_string(integrator.outcome().ending))));
     land(integrator.system(), integrator.x(), integrator.t());
+    if (is_too_short) {
+      zeno_guard_.go_by_steps();
+    } else if (is_before_end && may_step() && !(met_fast_ && lasted_ < stride_)) {
+      zeno_guard_.has_flown(lasted_, stride_);
+    }
     if (!contact_state_.fault) return fail(call, contact_state_.fault);
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     return zeno_guard_.is_in_steps() ? MotionEvent::too_many_events : MotionEvent::contact_changes;
@@ -400,35 +405,15 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   bool may_step() const {
     return stride_ > Real(0) && !(options_.step > Real(0)) && (!companions_ || companions_->state.empty());
   }
-  /// Resolves the bounces of this instant; the time step stops the bodies of all other contacts. Returns the pairs that
-  /// bounce, among those that approach faster than `slow`.
-  std::vector<Touching> bounce(const Real& slow) {
-    const std::vector<Real> before = contact_state_.last;
-    std::vector<Touching> bouncing;
-    for (const Touching& at : near_.pairs())
-      if (contact_state_.approaches(at, slow) && contact_state_.material_now(at, before, false).restitution > Real(0))
-        bouncing.push_back(at);
-    bool is_any = !bouncing.empty();
-    for (int round = 0, most = 64; is_any && round < most; ++round) {
-      is_any = false;
-      for (const Touching& at : bouncing)
-        is_any = (contact_state_.touches(at) &&
-                  contact_state_.strike(at, slow, contact_state_.material_now(at, before, false), journal())) ||
-                 is_any;
-    }
-    return bouncing;
-  }
   /// The time to the next of these impacts, at most `most`.
-  Real time_to_bounce(std::span<const Touching> bouncing, const Real& slow, std::span<const V> force,
-                      const Real& most) const {
+  Real time_to_bounce(std::span<const Touching> bouncing, std::span<const V> force, const Real& most) const {
     Real h = most;
-    for (const Touching& at : bouncing)
-      if (contact_state_.approaches(at, slow) && !contact_state_.touches(at)) {
-        const V rate =
-            force[at.a] * world_.inverse_mass[at.a] - (at.with_wall() ? V{} : force[at.b] * world_.inverse_mass[at.b]);
-        h = std::min(h, time_to_close(gap_of(world_, at), Real(-approach_of(world_, at)),
-                                      Real(-dot(rate, normal_of(world_, at)))));
-      }
+    for (const Touching& at : bouncing) {
+      const V rate =
+          force[at.a] * world_.inverse_mass[at.a] - (at.with_wall() ? V{} : force[at.b] * world_.inverse_mass[at.b]);
+      h = std::min(h, time_to_close(gap_of(world_, at), Real(-approach_of(world_, at)),
+                                    Real(-dot(rate, normal_of(world_, at)))));
+    }
     return h;
   }
   void note_pushed(const Real& h) {
@@ -458,6 +443,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   std::optional<PersistentContacts<Real, Dim>> resolved_;  // after the impacts of the present instant
   ZenoGuard zeno_guard_;
   ContactSteps<Real, Dim> steps_;
+  bool met_fast_ = false;  // at the last instant bodies met faster than forces would bring them together in two steps
   bool is_slow_ = false, is_steady_ = false;  // is_slow_: in the last step; is_steady_: at rest for good
   NearPairs<Real, Dim> near_;                 // for time steps
 };

@@ -396,7 +396,9 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     const V rate = i == j ? v : V(flights_.paths[j].v - v);
     simultaneous_.gather(flights_, i, Real(length(rate) * contact_time_));
     for (const std::uint32_t k : simultaneous_.members()) bring(k);
-    const Real speeds = std::max(Real(length(v) + length(flights_.paths[j].v)), flights_.slow);
+    Real speeds = flights_.slow;
+    for (const std::uint32_t k : simultaneous_.members())
+      speeds = std::max(speeds, Real(2 * length(flights_.paths[k].v)));
     constexpr Real rounding = std::numeric_limits<Real>::epsilon();
     const auto [impulses, error] = simultaneous_.strike(world_, flights_, Real(rounding * speeds));
     if (!(error <= std::sqrt(rounding) * speeds)) {

@@ -84,7 +84,7 @@ struct alignas(sizeof(Real) * 16) Plan {
   std::uint8_t support_count = 0;
   std::uint8_t strikes_at_once = 0;  // simultaneous strikes at the instant of the last collision
   bool is_tied = false;              // the next collision may be at one instant with another one
-  std::uint16_t in_a_row = 0;        // collisions before the last, each soon after the one before
+  std::uint32_t in_a_row = 0;        // collisions before the last, each soon after the one before
   std::uint32_t number = 0, material = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
   Vector<Real, Dim> acceleration{};

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <continuo/bodies/contacts/complementarity.hpp>
+#include <continuo/bodies/contacts/endless_collisions.hpp>
 #include <continuo/bodies/event_driven/exact_engine.hpp>
 #include <continuo/bodies/exact_rigid/friction_cones.hpp>
 #include <continuo/bodies/exact_rigid/friction_modes.hpp>
@@ -45,7 +46,7 @@ class ContactInstant {
   /// Points are sorted by their pairs. Approaches up to `slow` are no impacts where a contact loses energy. `noise` is
   /// the error of velocities.
   ContactInstant(System& system, std::span<const Point> points, const Real& slow, const Real& noise)
-      : system_(system), points_(points), slow_(slow), noise_(noise) {}
+      : system_(system), points_(points), slow_(slow), noise_(noise), rounding_(points.size()) {}
 
   /// Moves bodies apart that lie in each other, on the shortest way in the metric of the masses, and no point into
   /// another. What searches for contacts leave of a gap, some roundings each time, would add up where a body bounces
@@ -86,15 +87,15 @@ class ContactInstant {
   /// the normal of point k.
   template <class Struck>
   [[nodiscard]] Status strike(Struck&& struck) {
-    constexpr int most_rounds = 1000, elastic_rounds = 500;
-    for (int round = 0; round < most_rounds; ++round) {
+    constexpr std::uint32_t most_rounds = 10'000;
+    for (std::uint32_t round = 0; round < most_rounds; ++round) {
       std::vector<std::size_t> approaching;
+      note_rounding();
       for (std::size_t k = 0; k < points_.size(); ++k)
         if (rate_of(k) < -rounding_of(k)) approaching.push_back(k);
       if (approaching.empty()) return {};
-      if (std::ranges::none_of(approaching, [&](std::size_t k) { return bounces(k, round >= elastic_rounds); }))
-        add_closed(approaching);
-      if (Status fault = strike_together(approaching, round >= elastic_rounds, struck); !fault) return fault;
+      if (std::ranges::none_of(approaching, [&](std::size_t k) { return bounces(k, round); })) add_closed(approaching);
+      if (Status fault = strike_together(approaching, round, struck); !fault) return fault;
     }
     return cannot_continue("the impact does not end, bodies are jammed between others");
   }
@@ -128,9 +129,10 @@ class ContactInstant {
  private:
   using Moved = Moving<Real, Dim>;
 
-  /// Whether point k, which approaches, is to part again.
-  [[nodiscard]] bool bounces(std::size_t k, bool is_plastic) const {
-    const bool is_gentle = loses(k) && (is_plastic || rate_of(k) >= -slow_);
+  /// Whether point k, which approaches, is to part again in this round.
+  [[nodiscard]] bool bounces(std::size_t k, std::uint32_t round) const {
+    const bool ends = is_endless(points_[k].material.restitution, round),
+               is_gentle = loses(k) && (ends || rate_of(k) >= -slow_);
     return !is_gentle && points_[k].material.restitution > Real(0);
   }
   /// Adds the points that neither part nor approach, in order.
@@ -165,12 +167,18 @@ class ContactInstant {
   }
   [[nodiscard]] Real rate_of(const Row& row) const { return row.rate_of(body(row.a), body(row.b)); }
   [[nodiscard]] Real rate_of(std::size_t k) const { return rate_of(row_of(k)); }
-  /// The rounding of a rate, and what forces would make of it in a millionth of the contact time.
-  [[nodiscard]] Real rounding_of(std::size_t k) const {
+  /// The rounding of a rate, that of all speeds which the bodies have had at this instant, and what forces would make
+  /// of it in a millionth of the contact time.
+  [[nodiscard]] Real rounding_of(std::size_t k) const { return std::max(rounding_[k], rounding_now(k)); }
+  [[nodiscard]] Real rounding_now(std::size_t k) const {
     const Row row = row_of(k);
     const auto speed = [](const auto& of, const auto& lever) { return length(of.v) + length(lever) * length(of.spin); };
     return std::max(Real(slow_ / 1'000'000), Real(64 * std::numeric_limits<Real>::epsilon() *
                                                   (speed(body(row.a), row.lever_a) + speed(body(row.b), row.lever_b))));
+  }
+  /// What an impact stops keeps the rounding of the speed that it had.
+  void note_rounding() {
+    for (std::size_t k = 0; k < points_.size(); ++k) rounding_[k] = rounding_of(k);
   }
   [[nodiscard]] bool loses(std::size_t k) const {
     return points_[k].material.restitution < Real(1) || points_[k].material.friction > Real(0);
@@ -207,7 +215,8 @@ class ContactInstant {
   [[nodiscard]] const ExactBody<Real, Dim>* body_data() const { return std::as_const(system_).bodies().data(); }
 
   template <class Struck>
-  [[nodiscard]] Status strike_together(const std::vector<std::size_t>& approaching, bool is_plastic, Struck&& struck) {
+  [[nodiscard]] Status strike_together(const std::vector<std::size_t>& approaching, std::uint32_t round,
+                                       Struck&& struck) {
     const std::vector<Row> joints = system_.struck_joint_rows();
     std::vector<Row> rows;
     std::vector<Real> before, rate_after;
@@ -215,7 +224,7 @@ class ContactInstant {
     for (const std::size_t k : approaching) {
       rows.push_back(row_of(k));
       before.push_back(rate_of(rows.back()));
-      rate_after.push_back(bounces(k, is_plastic) ? -points_[k].material.restitution * before.back() : Real(0));
+      rate_after.push_back(bounces(k, round) ? -points_[k].material.restitution * before.back() : Real(0));
       rubs = rubs || points_[k].material.friction > Real(0);
     }
     std::vector<Real> impulses;
@@ -449,6 +458,7 @@ class ContactInstant {
   System& system_;
   std::span<const Point> points_;
   Real slow_, noise_;
+  std::vector<Real> rounding_;  // of each point, as far as noted
   std::vector<std::size_t> closed_;
   std::vector<LastingPoint> lasting_;
 };

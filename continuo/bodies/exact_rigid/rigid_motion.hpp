@@ -322,7 +322,7 @@ class RigidMotion final : public ExactEngine<Real, Dim> {
   /// An error where a body meets others again and again and time does not go on: without it a wrong foresight, or
   /// impacts of bodies jammed between others, would be a call that never ends.
   [[nodiscard]] Status check_progress(std::uint32_t i) {
-    constexpr std::size_t most_meetings = 10'000;
+    constexpr std::size_t most_meetings = 100'000;
     Meetings& meetings = meetings_[i];
     if (!(now_ - meetings.since <= contact_time_)) meetings = {now_, 0};
     if (++meetings.count <= most_meetings) return {};
