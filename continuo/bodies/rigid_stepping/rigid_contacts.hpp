@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <ranges>
@@ -206,7 +207,7 @@ class RigidContacts {
         if (before->contact.size == 0) ++block.lost;
         continue;
       }
-      const Manifold<Real, Dim> touching = manifold_of_pair(world, pairs, bodies, pair, margin);
+      const Manifold<Real, Dim> touching = ordered_manifold(world, pairs, bodies, pair, margin);
       if (touching.size == 0) continue;
       PartContact<Real, Dim>& born =
           block.born.emplace_back(PartContact<Real, Dim>{.parts = pair, .a = a, .b = b, .contact = {}});
@@ -361,6 +362,23 @@ class RigidContacts {
     const Real size = std::min(placed_a.reach, placed_b.reach);
     return manifold_of_boxes(*a.convex, *b.convex, {a.half, b.half, b_in_a, size}, margin);
   }
+  /// With its points in one order for all contacts of two bodies of space, that along a direction of body a to which
+  /// few faces are square. Sweeps push the points one after the other: where neighbours go round their corners in
+  /// different orders, a wall of boxes leans more, and overlaps by a fifth more while it settles.
+  [[nodiscard]] static Manifold<Real, Dim> ordered_manifold(const World<Real, Dim>& world,
+                                                            const RigidPairs<Real, Dim>& pairs,
+                                                            std::span<const RigidBody<Real, Dim>> bodies,
+                                                            const PartPair& pair, const Real& margin) {
+    Manifold<Real, Dim> found = manifold_of_pair(world, pairs, bodies, pair, margin);
+    if constexpr (Dim == 3) {
+      const auto place = [](const ManifoldPoint<Real, Dim>& point) {
+        return 9 * point.position[0] + 3 * point.position[1] + point.position[2];
+      };
+      if (pair.b < pairs.parts().size())
+        std::ranges::sort(std::span(found.points).first(found.size), std::greater<>{}, place);
+    }
+    return found;
+  }
   /// Calls take(found) before its points or its frame change.
   template <class Take>
   static void update(const World<Real, Dim>& world, const RigidPairs<Real, Dim>& pairs,
@@ -374,7 +392,7 @@ class RigidContacts {
       if (follow(contact, margin, std::min(reach_a, reach_b), reach_a < reach_b, a, b)) return;
     }
     take(found);
-    renew(contact, manifold_of_pair(world, pairs, bodies, found.parts, margin), pairs.placed(found.parts.a).pose,
+    renew(contact, ordered_manifold(world, pairs, bodies, found.parts, margin), pairs.placed(found.parts.a).pose,
           margin, a, b);
     take_rounding(pairs, found);
   }
