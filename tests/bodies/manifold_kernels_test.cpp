@@ -1,5 +1,6 @@
 // The solver of manifolds in lanes, against the rows of the same contacts that are swept one by one, and its widths
 // against each other.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -85,15 +86,18 @@ Scene<Real, Dim> random_scene(unsigned seed, std::size_t bodies, std::size_t con
 
 /// The velocities after each pass, one after another.
 template <class Real, int Dim>
-std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim>& kernels) {
+std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim>& kernels,
+                         const std::vector<ManifoldPass>& passes = {ManifoldPass::begin, ManifoldPass::push,
+                                                                    ManifoldPass::relax}) {
   ThreadTeam team(1);
   ManifoldSolver<Real, Dim> solver(team, kernels);
   const auto heads = scene.heads();
   solver.begin(scene.bodies, {.all = scene.contacts, .heads = heads, .separations = {}, .which = scene.which});
   const Real h = Real(1) / 240;
   solver.set_hardness(h, softness(Real(30), Real(10), h), softness(Real(60), Real(10), h), Real(4));
+  solver.set_deep(Real(0.05), Real(0.02));  // of separations from -0.1 on
   std::vector<Real> numbers;
-  for (const ManifoldPass pass : {ManifoldPass::begin, ManifoldPass::push, ManifoldPass::relax}) {
+  for (const ManifoldPass pass : passes) {
     solver.sweep(pass);
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       for (const Real& part : solver.state(i).v().components) numbers.push_back(part);
@@ -115,13 +119,34 @@ std::vector<Real> solved(Scene<Real, Dim> scene, const ManifoldKernels<Real, Dim
   return numbers;
 }
 
+/// `numbers` are those of `solved` with the pass `push_pressed` as the third.
+template <class Real, int Dim>
+void expect_that_only_what_is_pressed_moves(const Scene<Real, Dim>& scene, const std::vector<Real>& numbers) {
+  std::vector<bool> is_pressed(scene.bodies.size());
+  for (const auto& found : scene.contacts)
+    for (const auto& point : found.contact.all())
+      if (point.separation < Real(-0.02)) is_pressed[found.a] = is_pressed[found.b] = true;
+  constexpr std::size_t of_body = Vector<Real, Dim>::size() + Spin<Real, Dim>::size();
+  const std::size_t of_pass = of_body * scene.bodies.size();
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto after_push = numbers.begin() + static_cast<std::ptrdiff_t>(of_pass + i * of_body);
+    const bool moves = !std::equal(after_push, after_push + of_body, after_push + static_cast<std::ptrdiff_t>(of_pass));
+    EXPECT_FALSE(moves && !is_pressed[i]) << i;
+    moved += moves ? 1 : 0;
+  }
+  EXPECT_GT(moved, scene.contacts.size() / 10);
+}
 template <class Real, int Dim>
 void expect_the_same_bits_of_all_widths() {
   const auto kernels = manifold_kernels<Real, Dim>();
+  const std::vector<ManifoldPass> all = {ManifoldPass::begin, ManifoldPass::push, ManifoldPass::push_pressed,
+                                         ManifoldPass::relax, ManifoldPass::relax_deep};
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const auto scene = random_scene<Real, Dim>(seed, 60, seed == 1 ? 7 : 200);
-    const auto expected = solved(scene, kernels.front());
-    for (const auto& of_width : kernels) EXPECT_EQ(solved(scene, of_width), expected) << of_width.lanes;
+    const auto expected = solved(scene, kernels.front(), all);
+    for (const auto& of_width : kernels) EXPECT_EQ(solved(scene, of_width, all), expected) << of_width.lanes;
+    expect_that_only_what_is_pressed_moves(scene, expected);
   }
 }
 TEST(ManifoldKernels, GiveTheSameBitsOfAllWidths) {

@@ -338,7 +338,8 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   [[gnu::always_inline]] void solve(Others&... others) {
     (take_velocities(), ..., others.take_velocities());
     if constexpr (pass != ManifoldPass::relax_deep)
-      for (std::size_t p = 0; p < At::most_points; ++p) (resist_sliding(p), ..., others.resist_sliding(p));
+      for (std::size_t p = 0; p < At::most_points; ++p)
+        (resist_sliding<pass>(p), ..., others.template resist_sliding<pass>(p));
     (take_motions<pass>(), ..., others.template take_motions<pass>());
     for (std::size_t p = 0; p < At::most_points; ++p) (hold_apart<pass>(p), ..., others.template hold_apart<pass>(p));
     (give_velocities(), ..., others.give_velocities());
@@ -348,7 +349,7 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
   template <ManifoldPass pass>
   [[gnu::always_inline]] void take_motions() {
     moved_apart_ = L(Real(0));
-    if constexpr (pass == ManifoldPass::push) {
+    if constexpr (pass == ManifoldPass::push || pass == ManifoldPass::push_pressed) {
       const auto is_fixed = xsimd::min(a_.inverse_mass, b_.inverse_mass) == L(Real(0));
       const auto choose = [&](Real Softness<Real>::* part) {
         return xsimd::select(is_fixed, L(task_.soft_at_fixed.*part), L(task_.soft.*part));
@@ -365,8 +366,9 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
         moved_apart_ += rows_[At::rounding_a] * of_a.turned_normal[0] + rows_[At::rounding_b] * of_b.turned_normal[0];
     }
   }
+  template <ManifoldPass pass>
   [[gnu::always_inline]] void resist_sliding(std::size_t p) {
-    if (p < head_.points) resist_sliding(rows_of(p));
+    if (p < head_.points) resist_sliding<pass>(rows_of(p));
   }
   template <ManifoldPass pass>
   [[gnu::always_inline]] void hold_apart(std::size_t p) {
@@ -453,9 +455,16 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
     spin_a_ -= change_of_spin<k>(a_, arm_a, impulse);
     spin_b_ += change_of_spin<k>(b_, arm_b, impulse);
   }
+  template <ManifoldPass pass>
   [[gnu::always_inline]] void resist_sliding(L* point) {
     const V arm_a = vector(point + At::arm_a), arm_b = vector(point + At::arm_b);
     const L most = rows_[At::friction] * point[At::impulse];
+    // Of those that the pass is for.
+    const auto from = [&](const L& so_far, const L& now) {
+      if constexpr (pass == ManifoldPass::push_pressed)
+        return xsimd::select(point[At::separation] < L(-task_.pressed), now, so_far);
+      return now;
+    };
     std::array<L, Dim - 1> wanted;
     wanted[0] = point[At::impulse_across] - point[At::mass_across] * speed<1>(arm_a, arm_b);
     if constexpr (Dim == 2) {
@@ -466,10 +475,11 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       // At most 1: what is within the circle stays as it is.
       const L factor =
           xsimd::select(square > most2, xsimd::sqrt(most2 / xsimd::max(square, most2 + L(least))), L(Real(1)));
-      wanted[0] *= factor, wanted[1] *= factor;
+      wanted[0] *= factor, wanted[1] = from(point[At::impulse_across + 1], wanted[1] * factor);
       push<2>(wanted[1] - point[At::impulse_across + 1], arm_a, arm_b);
       point[At::impulse_across + 1] = wanted[1];
     }
+    wanted[0] = from(point[At::impulse_across], wanted[0]);
     push<1>(wanted[0] - point[At::impulse_across], arm_a, arm_b);
     point[At::impulse_across] = wanted[0];
   }
@@ -483,7 +493,7 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       const L apart = (point[At::separation] + moved_apart) + (dot(arm_b, turned_b) - dot(arm_a, turned_a));
       const auto is_apart = apart > zero;  // then it may close within the substep
       const L closing = apart * L(1 / task_.h);
-      if constexpr (pass == ManifoldPass::push) {
+      if constexpr (pass == ManifoldPass::push || pass == ManifoldPass::push_pressed) {
         bias = xsimd::select(is_apart, closing, xsimd::max(apart * soft_.rate, L(-task_.fastest_push)));
         of_mass = xsimd::select(is_apart, one, soft_.of_mass);
         of_impulse = xsimd::select(is_apart, zero, soft_.of_impulse);
@@ -492,6 +502,10 @@ class ManifoldBatch : BatchOfConstraints<L, Dim, ManifoldLayout<Dim>> {
       }
       if constexpr (pass == ManifoldPass::relax_deep)
         of_mass = xsimd::select(point[At::separation] < L(-task_.deep), one, zero);
+      if constexpr (pass == ManifoldPass::push_pressed) {
+        const auto is_pressed = point[At::separation] < L(-task_.pressed);
+        of_mass = xsimd::select(is_pressed, of_mass, zero), of_impulse = xsimd::select(is_pressed, of_impulse, zero);
+      }
     }
     const L so_far = point[At::impulse];
     const L wanted = so_far - point[At::mass] * of_mass * (speed<0>(arm_a, arm_b) + bias) - of_impulse * so_far;
@@ -528,7 +542,9 @@ template <class L, int Dim, ManifoldPass pass>
     if (batch < to) Batch(here, batch).template solve<pass>();
   } else {
     const auto acts = [](const BatchHead& head) {
-      return pass == ManifoldPass::rebound ? head.is_meant : head.is_deep;
+      return pass == ManifoldPass::rebound        ? head.is_meant
+             : pass == ManifoldPass::push_pressed ? head.is_pressed
+                                                  : head.is_deep;
     };
     for (std::size_t batch = from; batch < to; ++batch)
       if (acts(here.heads[batch])) Batch(here, batch).template solve<pass>();
@@ -546,6 +562,8 @@ void solve_manifolds(const ManifoldTask<typename L::value_type, Dim>& task, Mani
       return apply_pass<L, Dim, ManifoldPass::begin>(task, from, to);
     case ManifoldPass::push:
       return apply_pass<L, Dim, ManifoldPass::push>(task, from, to);
+    case ManifoldPass::push_pressed:
+      return apply_pass<L, Dim, ManifoldPass::push_pressed>(task, from, to);
     case ManifoldPass::relax:
       return apply_pass<L, Dim, ManifoldPass::relax>(task, from, to);
     case ManifoldPass::relax_deep:

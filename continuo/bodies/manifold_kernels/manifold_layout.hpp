@@ -44,16 +44,18 @@ struct BatchHead {
   bool is_b_fixed = false;  // likewise
   bool is_round = false;    // whether some of the bodies are rounded
   bool is_deep = false;     // whether some of the points are
+  bool is_pressed = false;  // likewise
   bool is_meant = true;     // whether the pass of impacts is for some of the manifolds
 };
 
 enum class ManifoldPass : std::uint8_t {
-  prepare,     // replaces the masses of points, 1 where there is one, by those that impulses there meet
-  begin,       // adds the impulses of the last substep
-  push,        // corrects positions as well
-  relax,       // removes the velocity that this gave
-  relax_deep,  // likewise, at those points alone that were deep when the step began, and along their normals
-  rebound      // as relax, but `separation` is the normal velocity to be removed
+  prepare,       // replaces the masses of points, 1 where there is one, by those that impulses there meet
+  begin,         // adds the impulses of the last substep
+  push,          // corrects positions as well
+  push_pressed,  // likewise, at those points alone that were pressed when the step began
+  relax,         // removes the velocity that this gave
+  relax_deep,    // likewise, at those points alone that were deep when the step began, and along their normals
+  rebound        // as relax, but `separation` is the normal velocity to be removed
 };
 
 /// Where a pass acts, and how.
@@ -67,7 +69,7 @@ struct ManifoldTask {
   Softness<Real> soft{};                           // of contacts and joints
   Softness<Real> soft_at_fixed{};                  // of contacts with bodies that never move
   Real fastest_push{};
-  Real deep{};  // an overlap of more is
+  Real deep{}, pressed{};  // an overlap of more is
 };
 
 /// Applies a pass to batches from ... to - 1, of which no two share a body that moves.

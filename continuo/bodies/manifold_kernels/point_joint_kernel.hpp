@@ -164,6 +164,8 @@ template <class L, int Dim>
       return for_each([](auto batch) { batch.begin(); });
     case ManifoldPass::push:
       return for_each([](auto batch) { batch.template solve<true>(); });
+    case ManifoldPass::push_pressed:
+      return;
     case ManifoldPass::relax:
     case ManifoldPass::relax_deep:
       return for_each([](auto batch) {

@@ -67,19 +67,23 @@ class ManifoldSolver {
     task_.soft = soft, task_.soft_at_fixed = soft_at_fixed;
     task_.fastest_push = fastest_push;
   }
-  /// From which overlap on points are deep.
-  void set_deep(const Real& overlap) {
-    task_.deep = overlap;
-    deep_runs_.clear();
-    for (const BatchRun& run : lanes_.runs(0))
-      if (const BatchRun deep = mark_deep(run); deep.first < deep.last) deep_runs_.push_back(deep);
+  /// From which overlap on points are deep, and from which on they are pressed.
+  void set_deep(const Real& overlap, const Real& pressed) {
+    task_.deep = overlap, task_.pressed = pressed;
+    deep_runs_.clear(), pressed_runs_.clear();
+    for (const BatchRun& run : lanes_.runs(0)) {
+      const MarkedRuns marked = mark(run);
+      if (marked.deep.first < marked.deep.last) deep_runs_.push_back(marked.deep);
+      if (marked.pressed.first < marked.pressed.last) pressed_runs_.push_back(marked.pressed);
+    }
   }
   /// Whether there are any, apart from groups.
   [[nodiscard]] bool is_deep() const { return !deep_runs_.empty(); }
+  /// Whether there are any, likewise.
+  [[nodiscard]] bool is_pressed() const { return !pressed_runs_.empty(); }
   void sweep(ManifoldPass pass) {
     heavy_.spread(states_.data(), copies());
-    for (const BatchRun& run :
-         pass == ManifoldPass::relax_deep ? std::span<const BatchRun>(deep_runs_) : lanes_.runs(0))
+    for (const BatchRun& run : runs_of(pass))
       if (run.is_shared) {
         apply(pass, run);
       } else {
@@ -119,7 +123,7 @@ class ManifoldSolver {
     for_each_group([&](std::size_t group) {
       const BatchRun all = lanes_.batches(group);
       fill(all, contacts);
-      const BatchRun deep = mark_deep(all);
+      const MarkedRuns marked = mark(all);
       const MotionTask<Real, Dim> task = motion(task_.h);
       const auto solve = [&](ManifoldPass pass) {
         for (const BatchRun& run : lanes_.runs(group)) apply(pass, run);
@@ -128,9 +132,11 @@ class ManifoldSolver {
         for (const std::uint32_t i : groups.bodies(group)) states_[i].set_v(states_[i].v() + acceleration[i] * task_.h);
         solve(ManifoldPass::begin);
         solve(ManifoldPass::push);
+        if (marked.pressed.first < marked.pressed.last) solve(ManifoldPass::push_pressed);
         kernels_.move(task, first_mover_[group], first_mover_[group + 1]);
         solve(ManifoldPass::relax);
-        for (int n = 0; deep.first < deep.last && n < sweeps_of_deep; ++n) solve(ManifoldPass::relax_deep);
+        for (int n = 0; marked.deep.first < marked.deep.last && n < sweeps_of_deep; ++n)
+          solve(ManifoldPass::relax_deep);
       }
     });
   }
@@ -358,14 +364,28 @@ class ManifoldSolver {
         point.friction[i] = *value(batch, lane, row(p, At::impulse_across + i));
     }
   }
-  /// Returns from the first to the last of the batches that have deep points.
-  BatchRun mark_deep(const BatchRun& run) {
-    BatchRun deep{run.last, run.first, run.is_shared};
+  /// From the first to the last of the batches that have deep points, and pressed ones.
+  struct MarkedRuns {
+    BatchRun deep, pressed;
+  };
+  MarkedRuns mark(const BatchRun& run) {
+    const BatchRun none{run.last, run.first, run.is_shared};
+    MarkedRuns marked{none, none};
+    const auto take = [](BatchRun& all, std::size_t batch) {
+      all.first = std::min(all.first, batch), all.last = batch + 1;
+    };
     for (std::size_t batch = run.first; batch < run.last; ++batch) {
       heads_[batch].is_deep = least_separation_[batch] < -task_.deep;
-      if (heads_[batch].is_deep) deep.first = std::min(deep.first, batch), deep.last = batch + 1;
+      heads_[batch].is_pressed = least_separation_[batch] < -task_.pressed;
+      if (heads_[batch].is_deep) take(marked.deep, batch);
+      if (heads_[batch].is_pressed) take(marked.pressed, batch);
     }
-    return deep;
+    return marked;
+  }
+  [[nodiscard]] std::span<const BatchRun> runs_of(ManifoldPass pass) const {
+    if (pass == ManifoldPass::relax_deep) return deep_runs_;
+    if (pass == ManifoldPass::push_pressed) return pressed_runs_;
+    return lanes_.runs(0);
   }
   /// A kernel may take several batches at once, but not of the shared colour.
   void apply(ManifoldPass pass, const BatchRun& run) {
@@ -411,11 +431,11 @@ class ManifoldSolver {
   LanesOfColours lanes_;
   LargeArray<Line> values_;  // see manifold_layout.hpp
   std::vector<BatchHead> heads_;
-  std::vector<Real> least_separation_;          // of the points of each batch when the step began
-  std::vector<BatchRun> deep_runs_;             // of each colour, from the first batch that has deep points to the last
-  std::vector<LaneInertia> inertias_;           // the inverse, of all bodies
-  std::vector<std::uint32_t> movers_;           // see set_movers; whole batches
-  std::vector<std::size_t> first_mover_{0, 0};  // the first batch of them of each group
+  std::vector<Real> least_separation_;              // of the points of each batch when the step began
+  std::vector<BatchRun> deep_runs_, pressed_runs_;  // of each colour, from the first batch with such points to the last
+  std::vector<LaneInertia> inertias_;               // the inverse, of all bodies
+  std::vector<std::uint32_t> movers_;               // see set_movers; whole batches
+  std::vector<std::size_t> first_mover_{0, 0};      // the first batch of them of each group
   std::vector<std::uint32_t> group_of_, group_of_before_;  // each contact
   std::size_t groups_ = 1;
   bool are_new_ = true;                       // all contacts: none is in its lane from the last step
