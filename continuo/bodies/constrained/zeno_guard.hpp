@@ -8,8 +8,8 @@ namespace continuo {
 
 /// A flight shorter than a step adds 1 to the count, a longer one subtracts its duration in steps. (Not counted are
 /// flights that end where bodies meet fast: many of them are no sign of a collapse, and steps would locate them less
-/// well.) At `full` some steps
-/// follow, and then flights are tried again. Each time that this fails, twice as many steps follow.
+/// well.) At `full` some steps follow, and then flights are tried again. Each time that this fails, twice as many steps
+/// follow.
 class ZenoGuard {
  public:
   [[nodiscard]] bool is_in_steps() const { return steps_ > 0; }
