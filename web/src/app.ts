@@ -182,7 +182,10 @@ export class App {
         return;
       }
       this.applyHash();
-      if (model.welcome && !wanted) this.openGallery();
+      if (model.welcome && !wanted) {
+        this.choosing = true;
+        this.openGallery();
+      }
     } else {
       this.written = "";
     }
@@ -192,8 +195,15 @@ export class App {
     this.vectorButton.setAttribute("aria-pressed", String(this.scene.toggleVectors()));
   }
 
+  /** Nobody has chosen a model yet. Until then the address names none, so that a page that is reloaded begins with its
+   *  gallery again. */
+  private choosing = false;
+
   private openGallery(): void {
-    openGallery(this.session, this.session.model?.gallery.some(({ name }) => name === drawingBoard) ? () => this.draw() : null);
+    openGallery(this.session, this.session.model?.gallery.some(({ name }) => name === drawingBoard) ? () => this.draw() : null, () => {
+      this.choosing = false;
+      this.remember();
+    });
   }
 
   private drawNext = false;
@@ -237,7 +247,7 @@ export class App {
 
   /** Writes what the address carries, a little later: browsers limit how often. */
   private remember(): void {
-    if (this.embedded || this.hashTimer || !this.hashDone) return;
+    if (this.embedded || this.hashTimer || !this.hashDone || this.choosing) return;
     this.hashTimer = window.setTimeout(() => {
       this.hashTimer = 0;
       const { model, state } = this.session;

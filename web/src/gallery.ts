@@ -21,7 +21,8 @@ export function isFound({ name, title, subject }: GalleryEntry, wanted: string):
   return wanted.toLowerCase().split(/[\s_]+/).every((word) => text.includes(word));
 }
 
-export function openGallery(session: Session, draw: (() => void) | null = null): void {
+/** `closed` is called when a model has been chosen, and when the gallery is left without. */
+export function openGallery(session: Session, draw: (() => void) | null, closed: () => void): void {
   const models = session.model?.gallery ?? [];
   const search = make("input", { type: "search", placeholder: "find a model…", "aria-label": "Find a model" });
   let close = (): void => {};
@@ -60,7 +61,7 @@ export function openGallery(session: Session, draw: (() => void) | null = null):
     } }, "Draw a world") : null,
     make("button", { type: "button", class: "framed", onclick: tour }, "Tour"),
   );
-  close = openDialog("Gallery", make("div", { class: "gallery" }, head, offerOfTour(tour), none, ...sections.map(({ element }) => element)), "wide");
+  close = openDialog("Gallery", make("div", { class: "gallery" }, head, offerOfTour(tour), none, ...sections.map(({ element }) => element)), "wide", closed);
   search.focus();
 }
 
