@@ -39,7 +39,8 @@ export class Editor {
   private readonly save: HTMLButtonElement;
   private timer = 0;
   private asked = 0;
-  private waiting: string | null = null;
+  /** Texts that run, and that no model has come of yet. */
+  private waiting: string[] = [];
 
   constructor(private readonly session: Session) {
     this.view = new EditorView({
@@ -128,13 +129,15 @@ export class Editor {
     const saves = model.saveable && this.session.may("save");
     this.save.title = saves ? "Save the file (Ctrl-S)" : "Save a copy (Ctrl-S)";
     this.save.setAttribute("aria-label", saves ? "Save the file" : "Save a copy");
-    // What was just run, or is being typed on, stays as it is.
-    if (model.text !== this.text && model.text !== this.waiting) {
+    // What was just run, or is being typed on, stays as it is, and so does what was run after it.
+    const answered = this.waiting.indexOf(model.text);
+    if (model.text !== this.text && answered < 0) {
       this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: model.text } });
       this.mark([]);
       this.view.scrollDOM.scrollTop = 0;
     }
-    this.waiting = null;
+    this.waiting = answered < 0 ? [] : this.waiting.slice(answered + 1);
+    if (model.text !== this.text) return;  // what has been typed on meanwhile is still to be checked
     clearTimeout(this.timer);
     setText(this.status, "");
   }
@@ -162,7 +165,7 @@ export class Editor {
 
   private run(): boolean {
     if (this.session.live) {
-      this.waiting = this.text;
+      this.waiting.push(this.text);
       this.session.send({ do: "run", text: this.text });
     }
     return true;

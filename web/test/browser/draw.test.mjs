@@ -1,7 +1,7 @@
 // Drawing a world by hand: the text grows, checks, and says what was drawn; what was written stays.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { button, model, now, open, picture, serve, until } from "./harness.mjs";
+import { button, model, now, open, picture, serve, stopped, until } from "./harness.mjs";
 
 const textOf = (tab) => tab.evaluate(() => globalThis.continuo.session.model.text);
 const names = (tab) => tab.evaluate(() => globalThis.continuo.session.model.bodies?.names ?? []);
@@ -11,20 +11,27 @@ async function begin(t, options) {
   const tab = await open(t, url, options);
   await until(tab, ({ t: time }) => time > 0.1, "it moves");
   await button(tab, "Draw balls, walls and springs").click();
-  await tab.waitForFunction(() => globalThis.continuo.session.frame?.t === 0);
+  await stopped(tab, "it is at the start", ({ t: time }) => time === 0);
+  // From then on the picture stands, and a place on the page remains one of the world.
+  await tab.waitForFunction(() => !globalThis.continuo.app.scene.stage.automatic);
   return tab;
 }
+
+/** What was written runs and is shown, or is wrong; a gesture that writes nothing leaves what was there. */
+const runs = (tab) =>
+  tab.waitForFunction(() => {
+    const { app, session } = globalThis.continuo;
+    return (session.model.text === app.editor.text && session.frame?.positions) || document.querySelector(".message.error");
+  });
 
 /** A gesture over the scene, in parts of its size. */
 async function drag(tab, [x0, y0], [x1, y1] = [x0, y0]) {
   const box = await tab.locator(".draw-layer").boundingBox();
-  const before = await textOf(tab);
   await tab.mouse.move(box.x + x0 * box.width, box.y + y0 * box.height);
   await tab.mouse.down();
   await tab.mouse.move(box.x + x1 * box.width, box.y + y1 * box.height, { steps: 3 });
   await tab.mouse.up();
-  await tab.waitForFunction((old) => globalThis.continuo.session.model.text !== old, before, { timeout: 1500 }).catch(() => undefined);
-  await tab.waitForFunction(() => globalThis.continuo.session.frame?.positions);
+  await runs(tab);
 }
 
 test("balls, walls and springs become lines of the text", async (t) => {
@@ -48,13 +55,29 @@ test("balls, walls and springs become lines of the text", async (t) => {
   assert.doesNotMatch(await textOf(tab), /\n  spring /, "its spring went with it");
   for (let i = 0; i < 20 && (await textOf(tab)) !== before; ++i) {
     await tab.keyboard.press("Control+z");
-    await tab.waitForTimeout(200);
+    await runs(tab);
   }
   assert.equal(await textOf(tab), before, "all of it is undone");
   await tab.keyboard.press("Control+y");
   await tab.waitForFunction(() => globalThis.continuo.session.model.bodies.count === 2);
   await tab.getByRole("button", { name: "Play", exact: true }).last().click();
   await until(tab, ({ t: time }) => time > 0.3, "what was drawn moves");
+});
+
+test("what is undone and done again before it runs is as it was", async (t) => {
+  const tab = await begin(t);
+  await drag(tab, [0.2, 0.4]);
+  await drag(tab, [0.8, 0.4]);
+  const drawn = await textOf(tab);
+  // At once: no model comes between them.
+  const twice = (what) => tab.evaluate((name) => [1, 2].forEach(() => globalThis.continuo.app.board.paper[name]()), what);
+  await twice("undo");
+  await tab.waitForFunction(() => globalThis.continuo.session.model.bodies.count === 1);
+  await runs(tab);
+  await twice("redo");
+  await tab.waitForFunction(() => globalThis.continuo.session.model.bodies.count === 3);
+  await runs(tab);
+  assert.equal(await textOf(tab), drawn);
 });
 
 test("with the keys alone, and on a telephone", async (t) => {

@@ -14,6 +14,8 @@ export const command = process.env.CONTINUO_COMMAND ?? path.join(root, "build/co
 const page = process.env.CONTINUO_PAGE;  // a page to serve in place of the built-in one
 const pictures = process.env.CONTINUO_PICTURES ?? path.join(tmpdir(), "continuo-pictures");
 const browserPath = [process.env.CONTINUO_BROWSER, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((place) => place && existsSync(place));
+/** Milliseconds, for whatever is waited for: only a test that fails waits so long, on a machine however busy. */
+const limit = 60000;
 
 export const model = (name) => path.join(root, "models", `${name}.sim`);
 export const pageOptions = page ? ["--page", page] : [];
@@ -56,6 +58,7 @@ export async function browser() {
       args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars"],
       viewport: { width: 1280, height: 720 },
     });
+    context.setDefaultTimeout(limit);
     shared = { context, home };
   }
   return shared.context;
@@ -77,7 +80,7 @@ export async function open(t, url, { width = 1280, height = 720, scheme = "light
   await tab.setViewportSize({ width, height });
   await tab.emulateMedia({ colorScheme: scheme });
   await tab.goto(url);
-  await tab.waitForFunction(() => globalThis.continuo?.session.frame, null, { timeout: 15000 });
+  await tab.waitForFunction(() => globalThis.continuo?.session.frame);
   return Object.assign(tab, { problems });
 }
 
@@ -103,7 +106,7 @@ export const now = (tab) =>
   });
 
 /** Waits until `test`, which sees what `now` gives, holds. */
-export async function until(tab, test, what, limit = 10000) {
+export async function until(tab, test, what) {
   const end = Date.now() + limit;
   let seen;
   do {
@@ -113,6 +116,35 @@ export async function until(tab, test, what, limit = 10000) {
   } while (Date.now() < end);
   assert.fail(`${what}: not within ${limit} ms; at ${tab.url()}, t = ${seen.t}, state ${JSON.stringify(seen.state)}, values ${JSON.stringify(seen.values)}`);
 }
+
+/** Waits until it stands where `test` holds. That it no longer plays may be told before its last picture comes. */
+export const stopped = (tab, what, test = () => true) => until(tab, (seen) => !seen.state.playing && seen.t === seen.state.t && test(seen), what);
+
+/** Waits until the motion has gone on for so long, in its own time, after all that is known now. */
+export async function later(tab, time, what) {
+  const { t, state } = await now(tab);
+  await until(tab, (seen) => seen.t > Math.max(t, state.t) + time, what);
+}
+
+/** Waits until the camera rests, which follows what moves with a delay: until then no place of the page stays that of a
+ *  thing. */
+export const still = (tab) =>
+  tab.evaluate(() => new Promise((resolve) => {
+    const { stage } = globalThis.continuo.app.scene;
+    let before = "", same = 0;
+    const look = () => {
+      const view = [...stage.view, stage.width, stage.height].join();
+      same = view === before ? same + 1 : 0;
+      before = view;
+      // A picture comes with every second frame of the browser, as long as the camera moves.
+      if (same < 6) requestAnimationFrame(look);
+      else resolve();
+    };
+    look();
+  }));
+
+/** Waits until the plots show all rows that have come. */
+export const plotted = (tab) => tab.waitForFunction(() => !globalThis.continuo.app.plots.dirty);
 
 export const button = (tab, name) => tab.getByRole("button", { name, exact: true });
 
