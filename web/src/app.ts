@@ -301,7 +301,8 @@ export class App {
     if (this.presents) return this.endPresentation();
     this.root.classList.add("present");
     document.documentElement.classList.add("presenting");
-    void document.documentElement.requestFullscreen?.().catch(() => undefined);
+    // Who ends it before the screen is full leaves the screen as soon as it is.
+    void document.documentElement.requestFullscreen?.().then(() => (this.presents ? undefined : document.exitFullscreen())).catch(() => undefined);
     this.restyle();
   }
 
