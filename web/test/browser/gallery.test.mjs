@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { button, model, now, open, picture, root, serve, until } from "./harness.mjs";
+import { model, open, picture, root, serve, stopped, until } from "./harness.mjs";
 
 // Their conditions stand at both ends: there is nothing to see before all is known.
 const boundary = ["blasius", "boundary_layer", "bratu", "cantilever", "swinging_period"];
@@ -17,10 +17,10 @@ test("each model of the gallery", async (t) => {
   assert.deepEqual([...names, ...boundary].sort(), files.sort(), "the gallery is the folder");
   for (const name of names) {
     await tab.evaluate((wanted) => globalThis.continuo.session.send({ do: "open", model: wanted }), name);
-    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path === `${wanted}.sim`, name, { timeout: 10000 });
-    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 0 || document.querySelector(".message"), null, { timeout: 10000 });
+    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path === `${wanted}.sim`, name);
+    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 0 || document.querySelector(".message"));
     await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
-    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 3 || document.querySelector(".message"), null, { timeout: 10000 });
+    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 3 || document.querySelector(".message"));
     const heading = await tab.locator(".heading h1").textContent();
     assert.ok(heading.length > 5, `${name} says what it is`);
     await tab.waitForTimeout(250);
@@ -30,21 +30,24 @@ test("each model of the gallery", async (t) => {
   }
 });
 
-/** The lecture's points, each in a scene of its own with a sentence that says what to see. */
+/** The lecture's points, each in a scene of its own with a sentence that says what to see. What is to be seen is there at
+ *  every time after the one that is named; what explodes is looked at where it stops by itself. */
 const lecture = [
   ["euler_energy", 8, (seen) => assert.ok(seen.values.energy > 1.9 * 12.5, `Euler's energy grows: ${seen.values.energy}`)],
   ["ball_through_floor", 5, (seen) => assert.ok(seen.lowest < -0.2, `the ball pierces the floor: ${seen.lowest}`)],
   ["ball_located", 5, (seen) => assert.ok(seen.lowest > -1e-6 && Math.abs(seen.values.energy - 98.1) < 1e-3, `located impacts cure it: ${seen.lowest}, ${seen.values.energy}`)],
-  ["stiff_spring_explicit", 1.95, (seen) => assert.ok(Math.abs(seen.values.x) > 10, `the numbers explode: ${seen.values.x}`)],
+  ["stiff_spring_explicit", null, (seen) => assert.ok(Math.abs(seen.values.x) > 99, `the numbers explode: ${seen.values.x}`)],
   ["stiff_spring_implicit", 1.95, (seen) => assert.ok(seen.values.x > 0 && seen.values.x < 0.2, `calm: ${seen.values.x}`)],
 ];
 for (const [name, end, check] of lecture) {
   test(`the lecture's point: ${name}`, async (t) => {
     const { url } = await serve(t, model(name), "--speed", "4");
     const tab = await open(t, url);
-    await until(tab, ({ t: time }) => time > end, "it moves", 15000);
-    if (await button(tab, "Pause").isVisible()) await tab.keyboard.press("Space");
-    const seen = await until(tab, ({ state }) => !state.playing, "it pauses");
+    if (end !== null) {
+      await until(tab, ({ t: time }) => time > end, "it moves");
+      await tab.keyboard.press("Space");
+    }
+    const seen = await stopped(tab, "it stops", ({ state }) => end !== null || state.ended);
     const lowest = await tab.evaluate(() => Math.min(...globalThis.continuo.session.history.columns[0].subarray(0, globalThis.continuo.session.history.length)));
     check({ ...seen, lowest });
     assert.match(await tab.locator(".heading .watch").textContent(), /Watch /);
@@ -69,7 +72,7 @@ test("light and dark, a telephone and a projector", async (t) => {
     const wide = await tab.evaluate(() => document.documentElement.scrollWidth > innerWidth + 1);
     assert.equal(wide, false, `nothing sticks out on a ${name} page`);
     assert.equal(await tab.evaluate(() => [...document.querySelectorAll("button, input, select")].filter((each) => !(each.getAttribute("aria-label") || each.textContent.trim() || each.labels?.length)).length), 0, "every control has a name");
-    assert.ok((await now(tab)).drawn > 3, "the scene is drawn");
+    await until(tab, ({ drawn }) => drawn > 3, "the scene is drawn");
     await tab.close();
   }
 });

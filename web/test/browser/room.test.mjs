@@ -35,14 +35,14 @@ test("a viewer tries it, and comes back", async (t) => {
   const { url, viewers } = await serve(t, model("bouncing_ball"), "--listen", "127.0.0.2", "--viewers", "own", "--paused");
   const presenter = await open(t, url), viewer = await open(t, viewers);
   await viewer.locator(".room .own", { hasText: "Try it yourself" }).click();
-  await viewer.waitForFunction(() => globalThis.continuo?.session.role?.role === "owner" && globalThis.continuo.session.frame, null, { timeout: 20000 });
+  await viewer.waitForFunction(() => globalThis.continuo?.session.role?.role === "owner" && globalThis.continuo.session.frame);
   await viewer.evaluate(() => globalThis.continuo.session.send({ do: "set", parameter: "g", value: 2 }));
   await until(viewer, ({ state }) => state.parameters.g === 2, "their own change");
   assert.equal(await viewer.getByRole("button", { name: "Save the file" }).isVisible(), false);
   assert.notEqual((await now(presenter)).state.parameters.g, 2);
   await picture(viewer, "room_own");
   await viewer.locator(".room .own", { hasText: "Watch the presenter" }).click();
-  await viewer.waitForFunction(() => globalThis.continuo?.session.role?.role === "viewer" && globalThis.continuo.session.frame, null, { timeout: 20000 });
+  await viewer.waitForFunction(() => globalThis.continuo?.session.role?.role === "viewer" && globalThis.continuo.session.frame);
   assert.notEqual((await now(viewer)).state.parameters.g, 2);
 });
 
@@ -53,7 +53,7 @@ test("a step that takes long says so, and can be stopped", async (t) => {
   writeFileSync(file, "param N = 1000, k = 1 in 0..2\nfor i in 1..N {\n  u[i]' = -k*u[i] + 0.5*sin(u[i])*sum(j in 1..N: u[j])/N\n  u[i](0) = 1 + i/N\n}\nrun 0..100 method radau tol 1e-9\n");
   const { url } = await serve(t, file);
   const tab = await open(t, url);
-  await tab.locator(".room .busy", { hasText: "computing a step" }).waitFor({ timeout: 60000 });
+  await tab.locator(".room .busy", { hasText: "computing a step" }).waitFor();
   await picture(tab, "room_busy");
   await tab.locator(".room .busy button").click();
   await until(tab, ({ state }) => state.playing === false, "the stop");

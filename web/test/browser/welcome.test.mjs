@@ -5,7 +5,7 @@ import { spawnSync } from "node:child_process";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { button, command, model, now, open, picture, serve, until } from "./harness.mjs";
+import { button, command, model, open, picture, plotted, serve, until } from "./harness.mjs";
 
 const sizes = [["notebook", 1280, 720], ["screen", 1920, 1080], ["telephone", 390, 844]];
 const schemes = ["light", "dark"];
@@ -157,7 +157,7 @@ test("axes of a plot are chosen from menus", async (t) => {
   await dialog.getByLabel(/^h′/).check();
   await dialog.getByLabel(/^logarithmic, of/).check();
   await dialog.getByRole("button", { name: "Plot" }).click();
-  await tab.waitForTimeout(300);
-  assert.match(await tab.locator(".plot-card").first().locator("b").textContent(), /against h/);
+  await tab.locator(".plot-card").first().locator("b", { hasText: /against h/ }).waitFor();
+  await plotted(tab);
   await picture(tab, "welcome_axes");
 });
