@@ -190,6 +190,10 @@ class ConstrainedContacts {
     return material;
   }
 
+  [[nodiscard]] Status not_found(std::span<const Touching> pairs) const {
+    return impulses_not_found(world_.time, numbers_in(pairs),
+                              "masses that differ less, fewer bodies that touch, or less friction would have some");
+  }
   /// Updates the persistent contacts to `pairs`, which are sorted, and logs those that begin and those that end.
   template <class Pairs>
   void note_lasting(const Pairs& pairs, const Journal& journal) {
@@ -277,9 +281,7 @@ class ConstrainedContacts {
     // What is left of an approach is for the next round.
     const Real fastest = fastest_of(plastic);
     const auto [impulse, error] = strike_together<Real, Dim>(world_, plastic, slow / 8);
-    if (!(error <= std::max(Real(slow / 8), Real(rounded_speed() * fastest))))
-      fault = impulses_not_found(world_.time, numbers_in(plastic),
-                                 "masses that differ less, fewer bodies that touch, or less friction would have some");
+    if (!(error <= std::max(Real(slow / 8), Real(rounded_speed() * fastest)))) fault = not_found(plastic);
     for (std::size_t k = 0; k < plastic.size(); ++k)
       if (impulse[k] > Real(0)) has_struck(plastic[k], impulse[k], journal);
     return true;

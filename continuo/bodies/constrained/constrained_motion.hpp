@@ -214,7 +214,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     if (!contact_state_.fault) return fail(call, contact_state_.fault);
     const Real left = call.until - world_.time;
     const Real h = time_to_bounce(bouncing, force, std::min(stride_, left));
-    steps_.advance(world_, near_.pairs(), {force, torque, pull}, h);
+    steps_.advance(world_, near_.pairs(), {force, torque, pull, pull * stride_}, h);
     world_.time = h >= left ? call.until : world_.time + h;
     note_pushed(h);
     const bool was_slow = is_slow_;
@@ -226,6 +226,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       return fail(call, cannot_continue(
                             "a body's motion is no longer finite: a speed or a force is too large for the numbers"));
     if (const Real depth = deepest_overlap(near_.pairs()); has_sunk(depth)) return fail(call, sunk(depth));
+    if (!steps_.are_found()) return fail(call, contact_state_.not_found(steps_.near()));
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     if (is_steady_) return MotionEvent::nothing_moves;
     return zeno_guard_.is_in_steps() ? MotionEvent::stepped : MotionEvent::steps_made;

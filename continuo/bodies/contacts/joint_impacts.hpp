@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <continuo/bodies/contacts/direct_presses.hpp>
+#include <continuo/bodies/contacts/newton_impulses.hpp>
 #include <continuo/bodies/contacts/persistent_contact.hpp>
 #include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 #include <continuo/bodies/world.hpp>
@@ -26,8 +27,8 @@ struct JointImpulses {
 };
 
 /// Changes the velocities and spins of the world in up to 1000 sweeps, until these change no speed by more than
-/// `least`; where that does not suffice, directly, or, where something rubs, in 20 times as many, and at last in as
-/// many from what would be without friction: the sweeps then have to find only what friction adds.
+/// `least`; where that does not suffice, directly, or, where something rubs, by Newton's method, in 20 times as many,
+/// and at last in as many from what would be without friction: the sweeps then have to find only what friction adds.
 template <class Real, int Dim>
 [[nodiscard]] JointImpulses<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching,
                                                   const Real& least) {
@@ -57,6 +58,14 @@ template <class Real, int Dim>
   const auto is_found = [&] {
     return !(made.error > std::max(least, sweeps.fastest() * std::sqrt(std::numeric_limits<Real>::epsilon())));
   };
+  if (!is_found() && rubs && sweeps.rows().size() <= NewtonImpulses<Real, Dim>::usual_rows) {
+    sweeps.apply(free, NewtonImpulses<Real, Dim>(sweeps, free).find());
+    made.error = sweeps.sweep(least, most_sweeps / 10);
+    if (!is_found()) {
+      sweeps.apply(free, NewtonImpulses<Real, Dim>(sweeps, free).find_by_parts());
+      made.error = sweeps.sweep(least, most_sweeps / 10);
+    }
+  }
   if (!is_found()) made.error = sweeps.sweep(least, 20 * most_sweeps);
   if (!is_found() && rubs) {
     sweeps.restore(free);
