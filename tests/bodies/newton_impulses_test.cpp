@@ -173,7 +173,7 @@ int count_solved(double powers, const Material<double>& material, bool rolls) {
     EXPECT_TRUE(referee.is_possible) << "round " << round;
     const bool is_right = referee.violation <= rounding * referee.fastest;
     solved += is_right;
-    // The error that ContactSteps and strike_together look at agrees about it.
+    // The bound by which time steps judge impulses agrees about it.
     sweeps.apply(free, found);
     double energy = 0;
     for (const auto& one : free)

@@ -190,6 +190,7 @@ class ConstrainedContacts {
     return material;
   }
 
+  /// Says that impulses of these pairs were not found, by the numbers of their bodies in the whole world.
   [[nodiscard]] Status not_found(std::span<const Touching> pairs) const {
     return impulses_not_found(world_.time, numbers_in(pairs),
                               "masses that differ less, fewer bodies that touch, or less friction would have some");
